@@ -1,11 +1,11 @@
-//! Errors of files, records and options.
+//! Error of files, records and options.
 
 use std::error::Error;
 use std::io;
 use std::sync::Arc;
 
-/// A file that is not read, a record that cannot be, or an operation that it does not allow; each variant is something
-/// else that the caller can do about it.
+/// A file that is not read, a record that cannot exist, or an operation that it does not allow. The variants are
+/// categories to act on.
 ///
 /// Lines and byte positions count as in an editor: lines from 1, bytes from 0.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -110,7 +110,7 @@ impl RecordError {
         Self::TimeAxis { index, what }
     }
 
-    /// As many times as values are needed.
+    /// Numbers of times and values that differ.
     pub(crate) fn length_mismatch(times: usize, values: usize) -> Self {
         Self::time(None, format!("{times} time stamps were given for {values} values"))
     }
@@ -207,7 +207,7 @@ impl RecordError {
     }
 }
 
-/// Whether a result is an error whose message has `text`.
+/// True for an error whose message has `text`.
 #[cfg(test)]
 pub(crate) fn says<T>(result: &Result<T, RecordError>, text: &str) -> bool {
     result.as_ref().is_err_and(|error| error.to_string().contains(text))

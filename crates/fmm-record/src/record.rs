@@ -99,6 +99,18 @@ impl Span {
     }
 }
 
+impl From<Record> for Cow<'_, Record> {
+    fn from(record: Record) -> Self {
+        Self::Owned(record)
+    }
+}
+
+impl<'a> From<&'a Record> for Cow<'a, Record> {
+    fn from(record: &'a Record) -> Self {
+        Self::Borrowed(record)
+    }
+}
+
 /// A measured channel: samples at equal intervals, what they are, and their unit.
 ///
 /// A record that exists is valid: it has at least one sample, every sample is finite, and the interval is positive.
@@ -263,8 +275,13 @@ impl Record {
     /// # Errors
     /// [`RecordError::Options`] if no sample lies there.
     pub fn crop(&self, from: f64, to: f64) -> Result<Self, RecordError> {
-        let kept = Span { from: Some(from), to: Some(to) }.samples(self.start, self.interval, self.len())?;
+        let kept = self.samples_within(from, to)?;
         Ok(self.derived(self.time(kept.start), self.values[kept].to_vec()))
+    }
+
+    /// The samples that [`Record::crop`] takes.
+    pub(crate) fn samples_within(&self, from: f64, to: f64) -> Result<Range<usize>, RecordError> {
+        Span { from: Some(from), to: Some(to) }.samples(self.start, self.interval, self.len())
     }
 
     /// The same motion in `most` samples or fewer: the means of neighbours where there are more.

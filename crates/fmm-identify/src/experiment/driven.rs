@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use fmm_model::ModelError;
-use fmm_record::{Quantity, Record, Swings, noise, quantisation_step, saturation, spikes};
+use fmm_record::{Examination, Quantity, Record};
 
 use super::{Drive, Driven, Experiment, ring_down, usable};
 use crate::error::IdentifyError;
@@ -60,34 +60,36 @@ impl Experiment {
             Offset::Rest => return Err(IdentifyError::no_rest()),
             Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
         };
-        let spikes = spikes(&record);
+        let examination = Examination::of(record);
+        let (record, spikes) = (examination.record(), examination.spikes());
         let kept = ring_down::without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
-        let swings = Swings::of(&record);
+        let swings = examination.swings();
         let mean = record.mean();
         let amplitude = record.values().iter().fold(0.0f64, |most, value| most.max((value - mean).abs()));
         // A ramp does not oscillate; its whole duration stands for half a period.
         let frequency = swings.frequency().unwrap_or(0.5 / record.duration());
-        let noise = noise(record.values());
+        let noise = examination.noise();
         let mut values = drive.values_from(record.start(), 0.0);
         values.resize(values.len().max(record.len()), 0.0);
-        let guess = DrivenGuess::of(&record, &drive, &values, frequency, noise);
+        let guess = DrivenGuess::of(record, &drive, &values, frequency, noise);
         let summary = RecordSummary {
             samples: kept.iter().map(Range::len).sum(),
             held_offset,
             gain_uncertainty,
             half_swings: swings.peaks().len(),
             amplitudes: (amplitude, amplitude),
-            resolution: quantisation_step(record.values()),
+            resolution: examination.resolution(),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
-            saturation: saturation(record.values()),
+            saturation: examination.saturation(),
             is_driven: true,
-            ..RecordSummary::unseen(&record, frequency, noise)
+            ..RecordSummary::unseen(record, frequency, noise)
         };
         let guess_of_response = FirstGuess::of_driven(frequency, mean, amplitude, first, quantity);
+        let peaks = swings.peaks().iter().map(|peak| (peak.time, peak.value)).collect();
         Ok(Self {
-            peaks: swings.peaks().iter().map(|peak| (peak.time, peak.value)).collect(),
+            peaks,
             driven: Some(Driven { drive, guess, is_at_rest: false }),
-            ..Self::bare(record, kept, guess_of_response, summary)
+            ..Self::bare(examination.into_record(), kept, guess_of_response, summary)
         })
     }
 }

@@ -1,7 +1,7 @@
 //! The velocity after a blow: its offset, its noise, and when the motion ends.
 
 use fmm_frf::Channel;
-use fmm_record::{Record, noise, quantisation_step, spikes};
+use fmm_record::{Examination, Record, noise, quantisation_step};
 
 use crate::error::IdentifyError;
 use fmm_model::Estimated;
@@ -29,7 +29,7 @@ pub(crate) fn mean<'a>(samples: impl Iterator<Item = &'a f64>, deviation: f64) -
 /// The values of a record with its spikes bridged by straight lines, and how many samples those are.
 pub(crate) fn bridged(record: &Record) -> (Vec<f64>, usize) {
     let (mut values, mut count) = (record.values().to_vec(), 0);
-    for spike in spikes(record) {
+    for spike in Examination::of(record).spikes() {
         let (before, after) = (spike.index - 1, (spike.index + spike.count).min(values.len() - 1));
         let (from, to) = (values[before], values[after]);
         for (step, value) in (1..).zip(&mut values[spike.index..after]) {

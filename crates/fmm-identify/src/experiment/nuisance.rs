@@ -78,7 +78,7 @@ mod tests {
     /// Two parts make the line that was found.
     #[test]
     fn a_line_of_hum_begins_where_it_was_found() {
-        let mut line = fmm_record::hum(&synthetic())[0];
+        let mut line = fmm_record::Examination::of(synthetic()).hum()[0];
         line.phase = 1.0;
         let parts: Vec<Nuisance> = Nuisance::of_hum(&[line]).collect();
         for time in [0.0, 0.123, 1.7] {

@@ -4,10 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_model::ModelError;
-use fmm_record::{
-    Interruption, OffsetStep, Peak, Quantity, Record, Release, SecondMode, Swings, Upsampling, further_releases, hum,
-    noise, period_change, quantisation_step, saturation, spikes, without_lines,
-};
+use fmm_record::{Examination, Interruption, Peak, Quantity, Record, Swings, Upsampling, period_change};
 
 use super::acceleration::{jumps, velocity_of};
 use super::{Experiment, usable};
@@ -50,41 +47,33 @@ impl Experiment {
         }
         let (record, gain_uncertainty) = usable(record, preparation)?;
         let (record, upsampling) = measured(record)?;
-        // Hum must not be taken for the machine; what is fitted is the record as it was measured.
-        let hum = hum(&record);
-        let cleaned = without_lines(&record, &hum);
+        let (first, end) = (record.start(), record.end());
+        let views = Views::of(record)?;
         let is_acceleration = quantity == Quantity::Acceleration;
-        // What shows the swings: the kinks of a velocity are smaller than the jumps of an acceleration.
-        let seen_of = |record: &Record| if is_acceleration { velocity_of(record) } else { Some(record.clone()) };
+        let hum = views.record.hum().to_vec();
+        let seen_quantity = views.seen().record().quantity();
         // One motion is fitted, the first.
-        let seen = seen_of(&cleaned).ok_or(IdentifyError::too_few_half_swings(0, FEWEST_HALF_SWINGS))?;
-        let seen_quantity = seen.quantity();
-        let further = further_releases(&seen);
-        let until = further.first().map_or(record.end(), |next| next.sound_until);
-        let (mut record, mut cleaned) = (record.crop(record.start(), until)?, cleaned.crop(record.start(), until)?);
-        let mut seen = seen.crop(record.start(), until)?;
+        let further = views.seen().further_releases();
+        let until = further.first().map_or(end, |next| next.sound_until);
+        let views = views.crop(first, until)?;
         // Who says where to end knows what is there.
-        let interruption = if preparation.to.is_none() { Interruption::of(&seen) } else { None };
-        if let Some(Interruption { sound_until, .. }) = interruption {
-            // In place: a long record is held once.
-            record = record.crop(record.start(), sound_until)?;
-            cleaned = cleaned.crop(record.start(), sound_until)?;
-            seen = seen.crop(record.start(), sound_until)?;
-        }
-        let swings = Swings::of(&seen);
-        let release = Release::of(&cleaned);
+        let interruption = if preparation.to.is_none() { views.seen().interruption() } else { None };
+        let until = interruption.map_or(until, |Interruption { sound_until, .. }| sound_until);
+        let views = views.crop(first, until)?;
+        let swings = views.seen().swings().clone();
+        let release = views.cleaned.release();
         let held_offset = match preparation.offset {
             Offset::Fitted => None,
             Offset::Rest => Some(release.ok_or(IdentifyError::no_rest())?.offset),
             Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
         };
-        let begin = release.map_or(record.start(), |release| beginning(&swings, release.rest_end, seen_quantity));
-        let record = record.crop(begin, record.end())?;
-        let (cleaned, seen) = (cleaned.crop(begin, cleaned.end())?, seen.crop(begin, seen.end())?);
+        let begin = release.map_or(first, |release| beginning(&swings, release.rest_end, seen_quantity));
+        let views = views.crop(begin, until)?;
+        let (record, seen, noise) = (views.record.record(), views.seen(), views.cleaned.noise());
 
         let start = record.start();
         // The integral of noise walks in the rest as well.
-        let walk = WALKS * noise(cleaned.values()) * (record.duration() * record.interval()).sqrt();
+        let walk = WALKS * noise * (record.duration() * record.interval()).sqrt();
         let swung = Swung::of(&swings, seen_quantity, start - record.interval(), is_acceleration.then_some(walk));
         let Swung { peaks, times, heights, frequency } = swung;
         let oscillation = Oscillation {
@@ -94,14 +83,13 @@ impl Experiment {
         let few = IdentifyError::too_few_half_swings(peaks.len(), FEWEST_HALF_SWINGS);
         let guess = FirstGuess::of(&oscillation, seen_quantity).ok_or(few)?;
 
-        let spikes = spikes(&cleaned);
+        let spikes = views.cleaned.spikes();
         let mut kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
         if is_acceleration {
-            let jumps = jumps(&times, noise(cleaned.values()), &guess, &seen);
+            let jumps = jumps(&times, noise, &guess, seen.record());
             kept = kept.into_iter().flat_map(|range| between(range, &jumps)).collect();
         }
-        let resolution = quantisation_step(record.values());
-        let noise = noise(cleaned.values());
+        let resolution = views.record.resolution();
         if resolution.is_some_and(|step| step > COARSE * noise) {
             // What swings within a step or two is rounded to another motion.
             let last = peaks.last().map_or(0.0, |peak| (peak.time - start) / record.interval());
@@ -125,27 +113,62 @@ impl Experiment {
             frequency: guess.frequency(),
             noise,
             resolution,
-            rest_from: rest_from(&cleaned, resolution.unwrap_or(0.0), guess.frequency()),
+            rest_from: rest_from(&views.cleaned, resolution.unwrap_or(0.0), guess.frequency()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
-            saturation: saturation(record.values()),
-            offset_step: OffsetStep::of(&seen),
+            saturation: views.record.saturation(),
+            offset_step: seen.offset_step(),
             period_change: period_change(&times, &heights),
             hum,
             further_releases: further.iter().map(|release| release.time).collect(),
             interruption,
             upsampling,
-            second_mode: SecondMode::of(&seen),
+            second_mode: seen.second_mode(),
             is_driven: false,
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         let nuisances = Nuisance::of_hum(&summary.hum).collect();
-        Ok(Self { peaks, ..Self::bare(record, kept, guess, summary) }.beside(nuisances))
+        Ok(Self { peaks, ..Self::bare(views.record.into_record(), kept, guess, summary) }.beside(nuisances))
+    }
+}
+
+/// Examinations of one measurement.
+struct Views {
+    /// The record as it was measured, which is fitted.
+    record: Examination<'static>,
+    /// Without its hum, which must not be taken for the machine.
+    cleaned: Examination<'static>,
+    /// The velocity of an acceleration: its kinks are smaller than the jumps of the acceleration.
+    velocity: Option<Examination<'static>>,
+}
+
+impl Views {
+    fn of(record: Record) -> Result<Self, IdentifyError> {
+        let record = Examination::of(record);
+        let cleaned = Examination::of(record.without_hum());
+        let velocity = if cleaned.record().quantity() == Quantity::Acceleration {
+            let few = || IdentifyError::too_few_half_swings(0, FEWEST_HALF_SWINGS);
+            Some(Examination::of(velocity_of(cleaned.record()).ok_or_else(few)?))
+        } else {
+            None
+        };
+        Ok(Self { record, cleaned, velocity })
+    }
+
+    /// The view that shows the swings.
+    fn seen(&self) -> &Examination<'static> {
+        self.velocity.as_ref().unwrap_or(&self.cleaned)
+    }
+
+    /// The parts of all views from `from` to `to` (s).
+    fn crop(self, from: f64, to: f64) -> Result<Self, IdentifyError> {
+        let velocity = self.velocity.map(|velocity| velocity.crop(from, to)).transpose()?;
+        Ok(Self { record: self.record.crop(from, to)?, cleaned: self.cleaned.crop(from, to)?, velocity })
     }
 }
 
 /// The samples of `record` that were measured, and how they were multiplied.
 fn measured(record: Record) -> Result<(Record, Option<Upsampling>), IdentifyError> {
-    let upsampling = Upsampling::of(&record);
+    let upsampling = Examination::of(&record).upsampling();
     // Without a copy: a long record is held once.
     let record = match upsampling {
         Some(upsampling) => upsampling.measured(&record)?,
@@ -204,12 +227,13 @@ fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
 
 /// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least
 /// half a period of the motion; `None` if they do not.
-fn rest_from(record: &Record, resolution: f64, frequency: f64) -> Option<f64> {
+fn rest_from(examination: &Examination, resolution: f64, frequency: f64) -> Option<f64> {
     /// The range of a thousand normal values, in standard deviations, with some to spare.
     const RANGE: f64 = 8.0;
+    let record = examination.record();
     let values = record.values();
     let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-    let band = RANGE * noise(values) + 1.5 * resolution + 1e-9 * largest;
+    let band = RANGE * examination.noise() + 1.5 * resolution + 1e-9 * largest;
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let moves = |value: &f64| {
         (low, high) = (low.min(*value), high.max(*value));

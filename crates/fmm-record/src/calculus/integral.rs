@@ -1,5 +1,7 @@
 //! Integral and derivative of a record.
 
+use fmm_model::Unit;
+
 use crate::error::RecordError;
 use crate::numerics::Sum;
 use crate::record::Record;
@@ -12,8 +14,8 @@ impl Record {
     /// y_0 = initial,        y_i = y_{i−1} + h (x_{i−1} + x_i)/2
     /// ```
     ///
-    /// An offset of the record becomes a slope of its integral; remove it before. The unit loses a final `/s`, or
-    /// gains ` s`: `m/s²` becomes `m/s`, `rad/s` becomes `rad`, `V` becomes `V s`.
+    /// An offset of the record becomes a slope of its integral; remove it before. The unit is multiplied by s:
+    /// `m/s²` becomes `m/s`, `rad/s` becomes `rad`, `V` becomes `V s`.
     ///
     /// ```
     /// use fmm_record::{Quantity, Record};
@@ -57,7 +59,7 @@ impl Record {
     /// ```
     ///
     /// The error is h²/6 times the third derivative (h²/3 at the ends); white noise of standard deviation σ becomes
-    /// σ/(√2 h), so smooth before. The unit gains `/s`, or loses a final ` s`: `m` becomes `m/s`, `m/s` becomes
+    /// σ/(√2 h), so smooth before. The unit is divided by s: `m` becomes `m/s`, `m/s` becomes
     /// `m/s²`, `V s` becomes `V`.
     ///
     /// # Errors
@@ -90,24 +92,16 @@ pub(crate) fn central_differences(x: &[f64]) -> Result<Vec<f64>, RecordError> {
 }
 
 fn unit_of_integral(unit: &str) -> String {
-    for square in ["/s²", "/s^2", "/s2"] {
-        if let Some(rest) = unit.strip_suffix(square) {
-            return format!("{rest}/s");
-        }
-    }
-    if let Some(rest) = unit.strip_suffix("/s") { rest.into() } else { format!("{unit} s").trim_start().into() }
+    read(unit).times(&Unit::of("s")).to_string()
 }
 
 fn unit_of_derivative(unit: &str) -> String {
-    if let Some(rest) = unit.strip_suffix(" s") {
-        rest.into()
-    } else if let Some(rest) = unit.strip_suffix("/s") {
-        format!("{rest}/s²")
-    } else if unit.is_empty() {
-        "1/s".into()
-    } else {
-        format!("{unit}/s")
-    }
+    read(unit).per(&Unit::of("s")).to_string()
+}
+
+/// The unit of a record, which may be empty, or have a square without its sign.
+fn read(unit: &str) -> Unit {
+    if unit.is_empty() { Unit::default() } else { Unit::of(&unit.replace("/s2", "/s²")) }
 }
 
 #[cfg(test)]

@@ -92,16 +92,6 @@ pub(crate) fn averaged(values: &[f64], half: usize, ends: EndRule) -> Vec<f64> {
         .collect()
 }
 
-impl Record {
-    /// The record after a [`moving_average`] over `span` samples.
-    ///
-    /// # Errors
-    /// As [`moving_average`].
-    pub fn smoothed(&self, span: usize, ends: EndRule) -> Result<Self, RecordError> {
-        Ok(self.derived(self.start(), moving_average(self.values(), span, ends)?))
-    }
-}
-
 /// Smoothing of a record, if any.
 ///
 /// ```
@@ -139,7 +129,7 @@ impl Smoothing {
     /// The smoothed `values`.
     ///
     /// # Errors
-    /// As for [`moving_average`] and [`savitzky_golay`].
+    /// Those of [`moving_average`] and [`savitzky_golay`].
     pub fn apply(&self, values: &[f64]) -> Result<Vec<f64>, RecordError> {
         match *self {
             Self::None => Ok(values.to_vec()),
@@ -160,7 +150,7 @@ impl Smoothing {
     /// by central differences, polynomials as such.
     ///
     /// # Errors
-    /// As for [`Smoothing::apply`], and [`RecordError::TooShort`] below three values.
+    /// Those of [`Smoothing::apply`], and [`RecordError::TooShort`] below three values.
     pub fn slope(&self, values: &[f64]) -> Result<Vec<f64>, RecordError> {
         if let Self::SavitzkyGolay { span, degree } = *self {
             return savitzky_golay_derivative(values, span, degree);
@@ -171,7 +161,7 @@ impl Smoothing {
     /// Standard deviation that white noise of standard deviation 1 is left with away from the ends.
     ///
     /// # Errors
-    /// As for [`Smoothing::apply`].
+    /// Those of [`Smoothing::apply`].
     pub fn noise_gain(&self) -> Result<f64, RecordError> {
         Ok(norm(&self.apply(&self.impulse())?))
     }
@@ -179,7 +169,7 @@ impl Smoothing {
     /// Standard deviation of the [`slope`](Self::slope) of white noise of standard deviation 1.
     ///
     /// # Errors
-    /// As for [`Smoothing::apply`].
+    /// Those of [`Smoothing::apply`].
     pub fn slope_noise_gain(&self) -> Result<f64, RecordError> {
         Ok(norm(&self.slope(&self.impulse())?))
     }
@@ -201,7 +191,7 @@ impl Record {
     /// The record after `smoothing`.
     ///
     /// # Errors
-    /// As for [`Smoothing::apply`].
+    /// Those of [`Smoothing::apply`].
     pub fn smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
         Ok(self.derived(self.start(), smoothing.apply(self.values())?))
     }
@@ -209,7 +199,7 @@ impl Record {
     /// The derivative in time after `smoothing`: as [`Record::differentiate`] with [`Smoothing::slope`].
     ///
     /// # Errors
-    /// As for [`Record::differentiate`] and [`Smoothing::apply`].
+    /// Those of [`Record::differentiate`] and [`Smoothing::apply`].
     pub fn differentiate_smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
         self.quantity().derivative()?;
         let slope = smoothing.slope(self.values())?;

@@ -48,7 +48,7 @@ pub fn savitzky_golay(values: &[f64], span: usize, degree: usize) -> Result<Vec<
 /// ```
 ///
 /// # Errors
-/// As for [`savitzky_golay`].
+/// Those of [`savitzky_golay`].
 pub fn savitzky_golay_derivative(values: &[f64], span: usize, degree: usize) -> Result<Vec<f64>, RecordError> {
     filtered(values, span, degree, |basis, i| basis.iter().map(|polynomial| polynomial.slope[i]).collect())
 }

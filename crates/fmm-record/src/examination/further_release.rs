@@ -1,15 +1,19 @@
-//! Further releases, which set a machine in motion again that was vibrating freely.
+//! Further releases, which set the machine in motion again during a free vibration.
 
 use crate::calculus::{EndRule, averaged};
-use crate::examination::noise::noise;
-use crate::examination::quantisation::quantisation_step;
+use crate::examination::Examination;
 use crate::examination::second_mode::beats;
-use crate::examination::spikes::without_spikes;
 use crate::examination::swings::Swings;
 use crate::numerics::{median, range};
 use crate::record::Record;
 
-/// A second release, or a push, in a record.
+/// A second release, or a push: a time at which the motion becomes clearly larger again after a ring-down.
+///
+/// A free motion of one mode never grows. A release shows where the range of the values in the period that follows is
+/// twice that in the period before, by 5 % of the largest range and by noise, and stays 1.5 times as large after it.
+/// Before it there must be a ring-down: three peaks that span 15 % of the range of the record. What moves the machine
+/// to where it is held before the first release is none. Neither are rises of half cycles that a beat of two modes
+/// describes, or three rises at regular distances.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FurtherRelease {
@@ -21,49 +25,39 @@ pub struct FurtherRelease {
     pub sound_until: f64,
 }
 
-/// The range of one period exceeds that before by this factor after a release.
-const RISE: f64 = 2.0;
-/// It still does, by this factor, once the step that begins it has passed: a jump of the offset does not.
-const LASTING: f64 = 1.5;
-/// Least rise, as a share of the largest range of the motion before (1).
-const VISIBLE: f64 = 0.05;
-/// Standard deviations of noise that the range of noise alone stays below.
-const ABOVE_NOISE: f64 = 10.0;
-/// Least share (1) of the range of the record that a motion must have to be a ring-down, and its fewest peaks. Handling
-/// before the release has less of them.
-const LARGE: f64 = 0.15;
-const FEWEST_PEAKS: usize = 3;
-/// Later rises that are as regular as this (1) are those of a beat.
-const REGULAR: f64 = 0.25;
+// Limits "by judgement" have no derivation: they were set on measured and simulated records, and the tests pin them.
 
-/// Further releases and pushes in `record`, in order: times at which the motion becomes clearly larger again after a
-/// ring-down; empty if there is only one ring-down.
-///
-/// A free motion of one mode never grows. A release shows where the range of the values in the period that follows is
-/// twice that in the period before, by 5 % of the largest range and by noise, and stays 1.5 times as large after it.
-/// Before it there must be a ring-down: three peaks that span 15 % of the range of the record. What moves the machine
-/// to where it is held before the first release is none. Neither are rises of half swings that a beat of two modes
-/// describes, or three rises at regular distances.
-///
-/// ```
-/// use fmm_record::{Quantity, Record, further_releases};
-///
-/// let ring = |t: f64| if t > 0.0 { (-2.0 * t).exp() * (13.8 * t).sin() } else { 0.0 };
-/// let values = (0..8000).map(|i| f64::from(i) * 1e-3).map(|t| ring(t) + 0.8 * ring(t - 4.0)).collect();
-/// let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s")?;
-///
-/// let found = further_releases(&record);
-/// assert_eq!(found.len(), 1);
-/// assert!((found[0].time - 4.0).abs() < 0.05 && found[0].sound_until < 4.0);
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-pub fn further_releases(record: &Record) -> Vec<FurtherRelease> {
-    let Some(envelope) = Envelope::of(record) else { return Vec::new() };
-    let found = envelope.releases(record);
-    if is_beat(&found) || (!found.is_empty() && beats(record)) { Vec::new() } else { found }
+/// Least ratio of the range in one period to that in the period before, at a release (1), by judgement.
+const RISE: f64 = 2.0;
+/// Least ratio half a period later (1), by judgement: a jump of the offset does not last.
+const LASTING: f64 = 1.5;
+/// Least rise over the largest range of the motion before (1), by judgement.
+const VISIBLE: f64 = 0.05;
+/// Range that noise alone does not reach, in its standard deviations (1): ten million normal values lie within ±5.
+const ABOVE_NOISE: f64 = 10.0;
+/// Least share of the range of the record that a ring-down has (1), by judgement: handling has less.
+const LARGE: f64 = 0.15;
+/// Fewest peaks of a ring-down, by judgement: handling before a release has fewer.
+const FEWEST_PEAKS: usize = 3;
+/// Largest relative difference of the distances between the rises of a beat (1), by judgement.
+const REGULAR: f64 = 0.25;
+/// Range before a release from rest over the range after it, at most (1), by judgement.
+const REST: f64 = 0.2;
+/// Margin around the range before a release (1), by judgement.
+const MARGIN: f64 = 0.1;
+/// Fewest samples of a period, and fewest periods of a record.
+const FEWEST: (usize, usize) = (8, 4);
+
+impl Examination<'_> {
+    /// Further releases and pushes, in order.
+    pub fn further_releases(&self) -> Vec<FurtherRelease> {
+        let Some(envelope) = Envelope::of(self) else { return Vec::new() };
+        let found = envelope.releases(self.record());
+        if is_beat(&found) || (!found.is_empty() && beats(self)) { Vec::new() } else { found }
+    }
 }
 
-/// Whether rises follow each other as those of a beat do.
+/// True if rises follow each other like those of a beat.
 fn is_beat(found: &[FurtherRelease]) -> bool {
     let distances: Vec<f64> = found.windows(2).map(|pair| pair[1].time - pair[0].time).collect();
     let typical = median(&mut distances.clone());
@@ -80,19 +74,19 @@ struct Envelope {
 }
 
 impl Envelope {
-    fn of(record: &Record) -> Option<Self> {
-        let swings = Swings::of(record);
+    fn of(examination: &Examination) -> Option<Self> {
+        let (record, swings) = (examination.record(), examination.swings());
         let (first, last) = (swings.peaks().first()?, swings.peaks().last()?);
-        let half_swing = (last.time - first.time) / (swings.peaks().len() - 1) as f64;
-        let period = (2.0 * half_swing * record.rate()).round() as usize;
-        if period < 8 || record.len() < 4 * period {
+        let half_cycle = (last.time - first.time) / (swings.peaks().len() - 1) as f64;
+        let period = (2.0 * half_cycle * record.rate()).round() as usize;
+        if period < FEWEST.0 || record.len() < FEWEST.1 * period {
             return None;
         }
-        let values = without_spikes(record);
+        let clean = examination.bridged();
         let half = period / 32;
-        let averaged_noise = noise(&values) / ((2 * half + 1) as f64).sqrt();
-        let floor = (ABOVE_NOISE * averaged_noise).max(2.0 * quantisation_step(&values).unwrap_or(0.0));
-        Some(Self { values: averaged(&values, half, EndRule::Shrinking), period, floor })
+        let averaged_noise = clean.noise() / ((2 * half + 1) as f64).sqrt();
+        let floor = (ABOVE_NOISE * averaged_noise).max(2.0 * clean.step());
+        Some(Self { values: averaged(clean.record().values(), half, EndRule::Shrinking), period, floor })
     }
 
     /// Lowest and highest value from sample `from` to `to`, within the record.
@@ -143,7 +137,7 @@ impl Envelope {
     /// Index at which the values after sample `i` leave the band of the period before.
     fn departure(&self, i: usize, period: usize) -> usize {
         let (low, high) = self.band(i - period, i);
-        let margin = (0.1 * (high - low)).max(0.5 * self.floor);
+        let margin = (MARGIN * (high - low)).max(0.5 * self.floor);
         let outside = |value: &f64| *value > high + margin || *value < low - margin;
         let end = (i + period).min(self.values.len());
         self.values[i..end].iter().position(outside).map_or(end, |k| i + k)
@@ -152,13 +146,13 @@ impl Envelope {
     /// The last sample before a motion that leaves its band at `start`, and has not done so by `i`, that nothing
     /// disturbs.
     fn sound_until(&self, i: usize, start: usize) -> usize {
-        let is_rest = self.extent(i - self.period, i) < 0.2 * self.extent(i, i + self.period);
+        let is_rest = self.extent(i - self.period, i) < REST * self.extent(i, i + self.period);
         // From rest the band is left soon; in motion a push shows after half a swing.
         start.saturating_sub(if is_rest { self.period / 8 } else { self.period / 2 })
     }
 }
 
-/// Whether samples `begin..end` of `record`, whose values have the range `whole`, show a ring-down.
+/// True if samples `begin..end` of `record`, whose values have the range `whole`, show a ring-down.
 fn rang(record: &Record, begin: usize, end: usize, whole: f64) -> bool {
     let Ok(part) = record.crop(record.time(begin), record.time(end)) else { return false };
     let swings = Swings::of(&part);
@@ -169,10 +163,12 @@ fn rang(record: &Record, begin: usize, end: usize, whole: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::examination::hum::hum;
     use crate::tests::synthetic::{CoulombDecay, Recorded, measured_records, released_twice, sampled, with_hum};
     use crate::units::Quantity;
-    use crate::without_lines;
+
+    fn further_releases(record: &Record) -> Vec<FurtherRelease> {
+        Examination::of(record).further_releases()
+    }
 
     #[test]
     fn single_ring_downs_have_none() {
@@ -180,7 +176,7 @@ mod tests {
             assert_eq!(further_releases(&record), []);
         }
         let record = with_hum();
-        assert_eq!(further_releases(&without_lines(&record, &hum(&record))), []);
+        assert_eq!(further_releases(&Examination::of(&record).without_hum()), []);
         // None in 3000 such records.
         for seed in 0..300 {
             assert_eq!(further_releases(&Recorded::random(seed).record), [], "seed {seed}");

@@ -21,7 +21,7 @@ pub(crate) struct Harmonic {
 }
 
 impl Harmonic {
-    /// Fit with the half swing `half` (samples) known and the centre unknown; `None` if the samples do not
+    /// Fit with the half cycle `half` (samples) known and the centre unknown; `None` if the samples do not
     /// determine it.
     pub(crate) fn fit(values: &[f64], range: Range<usize>, origin: f64, half: f64) -> Option<Self> {
         if range.len() < 3 {

@@ -2,13 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use crate::examination::quantisation::quantisation_step;
+use crate::examination::Examination;
 use crate::examination::steadiness::{Steady, steady};
 use crate::numerics::line_search::{Candidate, fundamental, lines};
 use crate::numerics::range;
 use crate::record::Record;
 
-/// A line of constant amplitude in a record.
+/// A line that goes on unchanged while the motion of a record decays, and after it has stopped: hum of the mains at
+/// 50 Hz or 60 Hz, their multiples, or any other constant line.
 ///
 /// ```text
 /// y = A cos(2π f (t − t₀) + φ)
@@ -20,6 +21,22 @@ use crate::record::Record;
 /// | A | `amplitude` | unit of the record | half of its height |
 /// | φ | `phase` | rad | of the cosine, at t₀, from 0 to 2π |
 /// | t₀ | `start` | s | first sample of the record in which it was found |
+///
+/// A line counts if
+///
+/// * it stands out of the noise around it, in the whole record, its first or last half, quarter or eighth. Noise alone
+///   does so in less than one record of a hundred (in tests in about one of a thousand);
+/// * it is twice as large as all that lies within 2.6 frequencies of the motion, as harmonics of friction would be
+///   alike. In a rest that is noise, so that smaller lines are found in a record with a rest;
+/// * its amplitude is the same, within a tenth and the noise, wherever in the record it would be seen above motion
+///   and noise, the last quarter included, and its phase goes on. What decays or stops with the motion fails this;
+/// * its amplitude is less than 0.45 of half the range of the record, and more than 0.3 steps of the converter.
+///
+/// The record must contain 28 periods of the line, and if it has more than 262 144 samples the line must lie below half
+/// of the rate that so many would have. A line below some four frequencies of the motion is found in a rest
+/// only, of 16 of its periods or more, and a line within 4/T of half the rate not at all. The frequency is uncertain by
+/// about 0.5/(T SNR) for a line that is seen for a time T at an amplitude of SNR standard deviations of the spectrum
+/// there, 5 at least: by less than 1/(20 T) from SNR = 10 on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Hum {
@@ -51,46 +68,15 @@ const SMALLEST: f64 = 0.3;
 /// Of more samples than this neighbours are averaged to look for lines: 10 million would take half a minute.
 pub(crate) const MOST_SAMPLES: usize = 1 << 18;
 
-/// The lines in `record` that go on unchanged while its motion decays, and after it has stopped: hum of the mains at
-/// 50 Hz or 60 Hz, their multiples, or any other constant line. The largest comes first; `None` if there is none.
-///
-/// A line counts if
-///
-/// * it stands out of the noise around it, in the whole record, its first or last half, quarter or eighth. Noise alone
-///   does so in less than one record of a hundred (in tests in about one of a thousand);
-/// * it is twice as large as all that lies within 2.6 frequencies of the motion, as harmonics of friction would be
-///   alike. In a rest that is noise, so that smaller lines are found in a record with a rest;
-/// * its amplitude is the same, within a tenth and the noise, wherever in the record it would be seen above motion
-///   and noise, the last quarter included, and its phase goes on. What decays or stops with the motion fails this;
-/// * its amplitude is less than 0.45 of half the range of the record, and more than 0.3 steps of the converter.
-///
-/// The record must contain 28 periods of the line, and if it has more than 262 144 samples the line must lie below half
-/// of the rate that so many would have. A line below some four frequencies of the motion is found in a rest
-/// only, of 16 of its periods or more, and a line within 4/T of half the rate not at all. The frequency is uncertain by
-/// about 0.5/(T SNR) for a line that is seen for a time T at an amplitude of SNR standard deviations of the spectrum
-/// there, 5 at least: by less than 1/(20 T) from SNR = 10 on.
-///
-/// ```
-/// use fmm_record::{Quantity, Record, hum, without_lines};
-/// use std::f64::consts::TAU;
-///
-/// let motion = |t: f64| (-t).exp() * (TAU * 2.2 * t).sin();
-/// let measured = |t: f64| motion(t) + 0.03 * (TAU * 50.02 * t + 1.0).cos();
-/// let record = Record::sampled(1000.0, (0..6000).map(|i| measured(f64::from(i) * 1e-3)).collect(), Quantity::Velocity, "m/s")?;
-///
-/// let lines = hum(&record);
-/// assert_eq!(lines.len(), 1);
-/// assert!((lines[0].frequency - 50.02).abs() < 1e-3 && (lines[0].amplitude - 0.03).abs() < 1e-4);
-/// assert!((without_lines(&record, &lines).values()[2000] - motion(2.0)).abs() < 1e-3);
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-pub fn hum(record: &Record) -> Vec<Hum> {
+/// The lines of a record, the largest first.
+pub(crate) fn hum(examination: &Examination) -> Vec<Hum> {
+    let record = examination.record();
     let survey = record.in_at_most(MOST_SAMPLES);
     let group = (survey.interval() / record.interval()).round();
     let mut values = survey.values().to_vec();
     let (low, high) = range(&values);
     let largest = LARGEST * 0.5 * (high - low);
-    let smallest = SMALLEST * quantisation_step(record.values()).unwrap_or(0.0);
+    let smallest = SMALLEST * examination.step();
     let fundamental = fundamental(&values);
     let count = values.len();
     let parts = [
@@ -137,10 +123,8 @@ pub fn hum(record: &Record) -> Vec<Hum> {
     found
 }
 
-/// `record` less the `lines`: for looking at its motion. A fit is better served by the record as it was measured, with
-/// the lines among what is fitted.
-#[must_use]
-pub fn without_lines(record: &Record, lines: &[Hum]) -> Record {
+/// `record` less the `lines`.
+pub(crate) fn without_lines(record: &Record, lines: &[Hum]) -> Record {
     let less = |(time, value): (f64, &f64)| value - lines.iter().map(|line| line.at(time)).sum::<f64>();
     let values = record.times().zip(record.values()).map(less).collect();
     // Only a line that is not finite can make a record of it that is none.
@@ -154,6 +138,10 @@ mod tests {
     use crate::examination::swings::Swings;
     use crate::tests::synthetic::{CoulombDecay, Noise, Recorded, measured_records, released_twice, sampled, with_hum};
     use crate::units::Quantity;
+
+    fn hum(record: &Record) -> Vec<Hum> {
+        Examination::of(record).hum().to_vec()
+    }
 
     /// `record` and lines of these frequencies (Hz), amplitudes and phases.
     fn humming(record: &Record, lines: &[(f64, f64, f64)]) -> Record {

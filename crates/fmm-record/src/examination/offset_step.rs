@@ -1,12 +1,17 @@
 //! A sudden change of the offset while the record oscillates.
 
-use crate::examination::noise::noise;
-use crate::examination::quantisation::quantisation_step;
+use crate::examination::Examination;
 use crate::examination::swings::Swings;
 use crate::numerics::median;
-use crate::record::Record;
 
 /// A jump of the centre of an oscillation.
+///
+/// The centre of each four peaks in a row (weights 1, 3, 3, 1) is independent of amplitudes that change at a
+/// steady rate. The median of four centres before is compared with that of four after. A jump counts if
+/// it exceeds 5 % of the amplitude there, eight times the usual change from centre to centre, four times the
+/// usual change over the same distance (which is what a drift makes), and noise and resolution. At least
+/// fourteen peaks are needed. Rest does not take part: a displacement that comes to rest off its centre is no
+/// step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct OffsetStep {
@@ -16,22 +21,15 @@ pub struct OffsetStep {
     pub height: f64,
 }
 
-impl OffsetStep {
-    /// Looks for the largest jump of the offset while `record` oscillates; `None` without a significant one.
-    ///
-    /// The centre of each four peaks in a row (weights 1, 3, 3, 1) is independent of amplitudes that change at a
-    /// steady rate. The median of four centres before is compared with that of four after. A jump counts if
-    /// it exceeds 5 % of the amplitude there, eight times the usual change from centre to centre, four times the
-    /// usual change over the same distance (which is what a drift makes), and noise and resolution. At least
-    /// fourteen peaks are needed. Rest does not take part: a displacement that comes to rest off its centre is no
-    /// step.
-    pub fn of(record: &Record) -> Option<Self> {
+impl Examination<'_> {
+    /// The largest jump of the offset during the oscillation, if it is significant.
+    pub fn offset_step(&self) -> Option<OffsetStep> {
         const SIDE: usize = 4;
-        /// A large jump makes half swings of its own, or swallows one.
+        /// A large jump makes half cycles of its own, or swallows one.
         const IRREGULAR: usize = 3;
         /// Centres that have peaks of both sides in them.
         const MIXED: usize = 3;
-        let swings = Swings::bridging(record, IRREGULAR);
+        let swings = Swings::bridging(self, IRREGULAR);
         let peaks = swings.peaks();
         let centres: Vec<f64> =
             peaks.windows(4).map(|p| (p[0].value + 3.0 * (p[1].value + p[2].value) + p[3].value) / 8.0).collect();
@@ -44,6 +42,7 @@ impl OffsetStep {
         let before = at + SIDE + MIXED - 1;
         let (from, to) = (before - 3, before + 4);
         let around = peaks.get(from..=to)?;
+        let record = self.record();
         let values = record.values();
         let width = (around[7].index - around[0].index) / (7 * 16);
         let index = sharpest(values, around[0].index, around[7].index, width.max(1), height.signum());
@@ -51,7 +50,7 @@ impl OffsetStep {
         let amplitude = (around[0].value - around[1].value).abs() / 2.0;
         let usual_change = median(&mut centres.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect::<Vec<_>>());
         let usual_jump = median(&mut jumps.iter().map(|jump| jump.abs()).collect::<Vec<_>>());
-        let resolution = noise(values).max(quantisation_step(values).unwrap_or(0.0));
+        let resolution = self.noise().max(self.step());
         let limit = (0.05 * amplitude).max(8.0 * usual_change).max(4.0 * usual_jump).max(2.0 * resolution);
         if height.abs() <= limit {
             return None;
@@ -64,7 +63,7 @@ impl OffsetStep {
         let before = centres.get(end.saturating_sub(SIDE)..end).filter(|clean| clean.len() == SIDE);
         let after = centres.get(begin..begin + SIDE);
         let height = before.zip(after).map_or(height, |(before, after)| centre(after) - centre(before));
-        Some(Self { time: record.time_at(index), height })
+        Some(OffsetStep { time: record.time_at(index), height })
     }
 }
 
@@ -76,8 +75,8 @@ fn centre(centres: &[f64]) -> f64 {
     if n == 0 { 0.0 } else { 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]) }
 }
 
-/// Where between samples `first` and `last` the means of `width` samples before and after differ most, towards
-/// `side`, from what they differ one width earlier and later.
+/// Place between samples `first` and `last` at which the means of `width` samples before and after differ most,
+/// towards `side`, compared with one width earlier and later.
 fn sharpest(values: &[f64], first: usize, last: usize, width: usize, side: f64) -> f64 {
     let begin = first.max(2 * width);
     let end = last.min(values.len().saturating_sub(2 * width));
@@ -110,9 +109,9 @@ mod tests {
     #[test]
     fn sound_records_have_none() {
         #[cfg(feature = "mat")]
-        assert_eq!(OffsetStep::of(&crate::tests::synthetic::fork()), None);
+        assert_eq!(Examination::of(&crate::tests::synthetic::fork()).offset_step(), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
-            assert_eq!(OffsetStep::of(&record), None);
+            assert_eq!(Examination::of(&record).offset_step(), None);
         }
     }
 
@@ -122,10 +121,10 @@ mod tests {
             let decay = CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband, release: 0.3 };
             for noise in [0.0, 0.05] {
                 let position = sampled(1000.0, 20.0, Quantity::Displacement, noise, |t| decay.state(t).0);
-                assert_eq!(OffsetStep::of(&position), None, "deadband {deadband}, noise {noise}");
+                assert_eq!(Examination::of(&position).offset_step(), None, "deadband {deadband}, noise {noise}");
                 let drifting =
                     sampled(1000.0, 20.0, Quantity::Velocity, noise, |t| 5.0 + 0.2 * t + decay.state(t).1 / 13.8);
-                assert_eq!(OffsetStep::of(&drifting), None, "deadband {deadband}, noise {noise}");
+                assert_eq!(Examination::of(&drifting).offset_step(), None, "deadband {deadband}, noise {noise}");
             }
         }
     }
@@ -137,7 +136,9 @@ mod tests {
             for (height, time) in [(1.0, 3.3215), (-0.6, 5.1005), (3.0, 4.0005)] {
                 let jump = |t: f64| if t > time { height } else { 0.0 };
                 let record = sampled(1000.0, 12.0, Quantity::Velocity, noise, |t| decay.state(t).1 / 13.8 + jump(t));
-                let found = OffsetStep::of(&record).unwrap_or_else(|| panic!("{height} at {time} s, noise {noise}"));
+                let found = Examination::of(&record)
+                    .offset_step()
+                    .unwrap_or_else(|| panic!("{height} at {time} s, noise {noise}"));
                 assert!((found.height - height).abs() < 0.1 * height.abs(), "{} against {height}", found.height);
                 assert!((found.time - time).abs() < 0.01, "{} s against {time} s", found.time);
             }

@@ -1,15 +1,24 @@
-//! The rest before a release, and the instant at which motion begins.
+//! Rest before a release, and the instant at which motion begins.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::examination::Examination;
 use crate::examination::noise::noise;
-use crate::examination::quantisation::quantisation_step;
-use crate::examination::spikes::without_spikes;
 use crate::numerics::{mean, range};
-use crate::record::Record;
 use crate::units::Quantity;
 
-/// A record that begins at rest and then moves.
+/// Rest at the beginning of a record, and the instant at which motion begins. A record that begins in motion, never
+/// moves, or rests for fewer than twenty samples has none.
+///
+/// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a
+/// band: five standard deviations of its white noise, four of all its noise, 1.5 steps of the converter, 0.5 % of
+/// half the record's range. A motion near its turning point stays within such a band for a while too. A rest
+/// must therefore last longer than a sine stays there that reaches the first extremum of the record in the same
+/// time as the record.
+///
+/// The instant is fitted to the rest and the first quarter of the way to that extremum, with the motion of an
+/// oscillator that is let go: a velocity follows sin φ, a displacement 1 − cos φ, with φ running to the extremum;
+/// an acceleration jumps. (Force and other quantities are taken like a velocity.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Release {
@@ -28,38 +37,16 @@ const SHORTEST: usize = 20;
 /// Number of samples in a row that must leave the level of rest on the same side, so that no spike is a release.
 const PERSISTENT: usize = 4;
 
-impl Release {
-    /// Finds the rest that `record` begins with; `None` if it begins in motion, never moves, or rests for fewer than
-    /// twenty samples.
-    ///
-    /// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a
-    /// band: five standard deviations of its white noise, four of all its noise, 1.5 steps of the converter, 0.5 % of
-    /// half the record's range. A motion near its turning point stays within such a band for a while too. A rest
-    /// must therefore last longer than a sine stays there that reaches the first extremum of the record in the same
-    /// time as the record.
-    ///
-    /// The instant is fitted to the rest and the first quarter of the way to that extremum, with the motion of an
-    /// oscillator that is let go: a velocity follows sin φ, a displacement 1 − cos φ, with φ running to the extremum;
-    /// an acceleration jumps. (Force and other quantities are taken like a velocity.)
-    ///
-    /// ```
-    /// use fmm_record::{Quantity, Record, Release};
-    ///
-    /// let velocity = |t: f64| if t < 0.2503 { 0.0 } else { (13.8 * (t - 0.2503)).sin() };
-    /// let values = (0..2000).map(|i| 0.1 + velocity(f64::from(i) * 1e-3)).collect();
-    /// let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s")?;
-    ///
-    /// let release = Release::of(&record).unwrap();
-    /// assert!((release.rest_end - 0.2503).abs() < 1e-4);
-    /// assert!((release.offset - 0.1).abs() < 1e-12);
-    /// # Ok::<(), fmm_record::RecordError>(())
-    /// ```
-    pub fn of(record: &Record) -> Option<Self> {
-        let values = &*without_spikes(record);
+impl Examination<'_> {
+    /// Rest at the beginning, and the instant at which it ends.
+    pub fn release(&self) -> Option<Release> {
+        let clean = self.bridged();
+        let record = clean.record();
+        let values = record.values();
         let (low, high) = range(values);
         let beginning = values.get(..SHORTEST)?;
         let half_range = (high - low) / 2.0;
-        let floor = (1.5 * quantisation_step(values).unwrap_or(0.0)).max(0.005 * half_range);
+        let floor = (1.5 * clean.step()).max(0.005 * half_range);
         let mut rest = Rest::of(beginning, floor);
         let mut departure = rest.departure(values)?;
         // A longer rest knows its level and its noise better.
@@ -76,7 +63,7 @@ impl Release {
         let samples = (onset.floor().max(0.0) as usize).min(departure.index).saturating_sub(guard).max(SHORTEST - 4);
         let quiet = &values[..samples];
         let offset = mean(quiet);
-        Some(Self { rest_end: record.time_at(onset), offset, noise: deviation(quiet, offset), samples })
+        Some(Release { rest_end: record.time_at(onset), offset, noise: deviation(quiet, offset), samples })
     }
 }
 
@@ -138,7 +125,7 @@ impl Rest {
         best
     }
 
-    /// Whether the rest is longer than a sine in motion stays within the band around a turning point.
+    /// True if the rest is longer than a sine in motion stays within the band around a turning point.
     ///
     /// ```text
     /// e = (H + band)/2 (1 − cos φ),        φ = π t/T
@@ -154,8 +141,8 @@ impl Rest {
             return false;
         }
         let phase = (1.0 - 2.0 * part).acos() / PI;
-        let half_swing = (extremum.index - departure.index) as f64 / (1.0 - phase);
-        departure.index as f64 > 2.0 * phase * half_swing
+        let half_cycle = (extremum.index - departure.index) as f64 / (1.0 - phase);
+        departure.index as f64 > 2.0 * phase * half_cycle
     }
 
     /// Start of the motion (samples): the onset of the sine that fits the rest and the first part of the way to the
@@ -236,6 +223,7 @@ fn deviation(values: &[f64], mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Record;
     use crate::tests::synthetic::{CoulombDecay, Recorded, pendulum, pendulum_velocity, quantised, sampled, wheel};
 
     fn decay(release: f64) -> CoulombDecay {
@@ -251,7 +239,7 @@ mod tests {
                 let velocity = sampled(1000.0, 12.0, Quantity::Velocity, noise * scale, |t| 20.0 + decay.state(t).1);
                 // A tenth of a second near a turning point looks the same within so much noise.
                 let hopeless = rest < 0.5 && noise >= 0.01;
-                let Some(found) = Release::of(&velocity) else {
+                let Some(found) = Examination::of(&velocity).release() else {
                     assert!(hopeless, "noise {noise}, rest {rest} s");
                     continue;
                 };
@@ -264,7 +252,7 @@ mod tests {
                     assert!((found.noise / (noise * scale) - 1.0).abs() < 0.1, "{}", found.noise);
                 }
                 let position = sampled(1000.0, 12.0, Quantity::Displacement, noise * 10.0, |t| decay.state(t).0);
-                let Some(found) = Release::of(&position) else {
+                let Some(found) = Examination::of(&position).release() else {
                     assert!(hopeless, "noise {noise}, rest {rest} s");
                     continue;
                 };
@@ -278,11 +266,11 @@ mod tests {
     fn a_short_rest_and_a_constant_rest_count() {
         let decay = decay(0.025);
         let velocity = sampled(1000.0, 12.0, Quantity::Velocity, 0.0, |t| decay.state(t).1);
-        let found = Release::of(&velocity).unwrap();
+        let found = Examination::of(&velocity).release().unwrap();
         assert!((found.rest_end - 0.025).abs() < 2e-4, "{} s", found.rest_end);
         let coarse =
             quantised(&sampled(1000.0, 12.0, Quantity::Velocity, 0.02, |t| 3.0 + decay.state(t - 1.0).1), 0.61);
-        let found = Release::of(&coarse).unwrap();
+        let found = Examination::of(&coarse).release().unwrap();
         assert!((found.rest_end - 1.025).abs() < 1e-3 && found.noise == 0.0, "{found:?}");
         assert!((found.offset - 3.0).abs() < 0.305);
     }
@@ -290,16 +278,16 @@ mod tests {
     #[test]
     fn records_that_begin_in_motion_have_no_release() {
         #[cfg(feature = "mat")]
-        assert_eq!(Release::of(&crate::tests::synthetic::fork()), None);
+        assert_eq!(Examination::of(&crate::tests::synthetic::fork()).release(), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
-            assert_eq!(Release::of(&record), None);
+            assert_eq!(Examination::of(&record).release(), None);
         }
         for phase in 0..24 {
             for rate in [50.0, 1000.0, 100_000.0] {
                 for noise in [0.0, 0.01, 0.1] {
                     let phase = f64::from(phase) * 0.27;
                     let record = sampled(rate, 5.0, Quantity::Velocity, noise, |t| (13.8 * t + phase).cos());
-                    let found = Release::of(&record);
+                    let found = Examination::of(&record).release();
                     assert_eq!(found, None, "phase {phase}, {rate} Hz, noise {noise}");
                 }
             }
@@ -309,11 +297,11 @@ mod tests {
     #[test]
     fn records_without_motion_have_no_release() {
         let rest = sampled(1000.0, 10.0, Quantity::Velocity, 0.1, |_| 1.0);
-        assert_eq!(Release::of(&rest), None);
+        assert_eq!(Examination::of(&rest).release(), None);
         let constant = sampled(1000.0, 1.0, Quantity::Velocity, 0.0, |_| 1.0);
-        assert_eq!(Release::of(&constant), None);
+        assert_eq!(Examination::of(&constant).release(), None);
         let short = sampled(1000.0, 0.01, Quantity::Velocity, 0.0, |t| t);
-        assert_eq!(Release::of(&short), None);
+        assert_eq!(Examination::of(&short).release(), None);
     }
 
     #[test]
@@ -325,7 +313,7 @@ mod tests {
             *value += 30.0;
         }
         let record = Record::sampled(1000.0, values, Quantity::Velocity, "mm/s").unwrap();
-        let found = Release::of(&record).unwrap();
+        let found = Examination::of(&record).release().unwrap();
         assert!((found.rest_end - 1.0).abs() < 1e-3, "{} s", found.rest_end);
     }
 

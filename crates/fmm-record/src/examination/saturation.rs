@@ -1,7 +1,7 @@
 //! Samples cut off at the limits of the converter.
 
 use crate::examination::noise::noise;
-use crate::examination::quantisation::quantisation_step;
+use crate::examination::noise::quantisation_step;
 use crate::numerics::range;
 
 /// Samples that lie on a limit of the measuring range, with the motion beyond it lost.
@@ -41,8 +41,13 @@ pub struct Saturation {
 /// assert_eq!(found.samples, 452);
 /// ```
 pub fn saturation(values: &[f64]) -> Option<Saturation> {
+    limits(values, noise(values), quantisation_step(values).unwrap_or(0.0))
+}
+
+/// Saturation of values of this noise and step of the converter.
+pub(crate) fn limits(values: &[f64], noise: f64, step: f64) -> Option<Saturation> {
     let (low, high) = range(values);
-    let tolerance = 6.0 * (quantisation_step(values).unwrap_or(0.0) + noise(values));
+    let tolerance = 6.0 * (step + noise);
     let visible = 1e-3 * (high - low);
     let upper = cut_off(values, high, tolerance, visible);
     let lower = cut_off(values, low, tolerance, visible);
@@ -111,7 +116,7 @@ impl Tops {
         self.ways = Some((least.min(way), greatest.max(way)));
     }
 
-    /// Whether the motion beside them differs by more than `alike`, which that at their tops then does as well.
+    /// True if the motion beside them differs by more than `alike`: their equal tops are then no coincidence.
     fn are_cut(&self, alike: f64) -> bool {
         const FEWEST: usize = 3;
         self.count >= FEWEST && self.ways.is_some_and(|(least, greatest)| greatest - least > alike)

@@ -1,16 +1,39 @@
 //! A second mode that vibrates beside the first.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
+use crate::examination::Examination;
 use crate::examination::hum::MOST_SAMPLES;
-use crate::examination::spikes::without_spikes;
-use crate::examination::swings::{Swings, period_change};
+use crate::examination::swings::period_change;
 use crate::numerics::least_squares::LeastSquares;
 use crate::numerics::line_search::lines;
 use crate::numerics::spectrum::component;
-use crate::record::Record;
 
 /// A second vibration beside the one that moves most.
+///
+/// There are two signs. A mode far from the first has a line of its own in the spectrum of the motion, or of its
+/// first half, quarter or eighth. The line must stand above the noise as in [`hum`](crate::hum()) and have 1 % of
+/// the motion at least. At multiples of the first frequency friction and nonlinear restoring forces have harmonics;
+/// there it must be larger than harmonics of friction are. (If the period changes with the amplitude, time is
+/// measured in half cycles.)
+///
+/// A mode near to the first makes the half cycles larger and smaller by turns. A cubic in their number k for
+/// their heights, the logarithms or the inverses of them describes a decay by dry friction, viscous or quadratic
+/// damping. About the nearest of these, h, a modulation is fitted:
+///
+/// ```text
+/// h (1 + c₀ + c₁ k + c₂ k² + c₃ k³ + a cos 2πνk + b sin 2πνk)
+/// ```
+///
+/// The beat counts if there are ten half cycles or more, if √(a² + b²) exceeds 2 %, and the sum of squared
+/// residuals falls by so much that noise does the same in one record of a hundred (by Fisher's F). Beats of fewer
+/// cycles than 1.8 count if half cycles rise by a tenth. The frequency is that of n f (1 ± 2ν/n), n odd, where
+/// the spectrum is largest.
+///
+/// In 4000 simulated decays with friction and damping of many kinds, two showed one of the signs. Of modes with a
+/// share of a tenth or more, 25 % and more away from the first, nineteen of twenty were found in 16 half cycles or
+/// more; in fewer, a mode near to the first is mostly missed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SecondMode {
@@ -21,77 +44,49 @@ pub struct SecondMode {
     pub share: f64,
 }
 
-/// Least share of a second mode (1): a beat of the half swings, and a line of its own.
+// Limits "by judgement" are pinned by the tests: 4000 simulated decays raised two alarms (documentation of the type).
+
+/// Least share of a second mode that shows as a beat (1), by judgement.
 const BEAT: f64 = 0.02;
+/// Least share of a second mode that shows as a line (1), by judgement.
 const LINE: f64 = 0.01;
-/// More than any harmonic of friction has (1): 4/(π (n² − 1)) d/A of a velocity, and a motion of three half swings has
-/// d/A = 1/6.
+/// Largest harmonic of friction (1): 4/(π (n² − 1)) d/A of a velocity, with d/A = 1/6 for three half cycles.
 const HARMONIC: f64 = 0.06;
-/// Fewest half swings that show a beat.
+/// Fewest half cycles that show a beat: six coefficients are fitted.
 const FEWEST: usize = 10;
-/// Most half swings that are looked at for a beat, as the time this takes grows with their square.
+/// Most half cycles that are looked at for a beat: the time grows with their square.
 const MOST: usize = 400;
-/// Half swings below this share of the first (1) are left out: friction that depends on speed changes their loss.
+/// Least height over the first (1), by judgement: below it, friction that depends on speed changes the loss.
 const SMALL: f64 = 0.15;
-/// Fewest cycles of a beat in the record: slower ones look like the decay of some friction.
+/// Fewest cycles of a beat in the record, by judgement: slower ones look like the decay of some friction.
 const CYCLES: f64 = 1.8;
-/// Largest part of the squared residuals that a beat leaves (1).
+/// Largest part of the squared residuals that a beat leaves (1): two modes leave 0.1, a push in motion 0.33.
 const EXPLAINED: f64 = 0.2;
 /// Probability that noise alone makes a beat (1).
 const FALSE_RATE: f64 = 1e-2;
-/// Relative rise of the half swings that no decay has (1).
+/// Relative rise of the half cycles that no decay has (1), by judgement.
 const RISE: f64 = 0.1;
+/// Highest frequency that is looked at (cycles per sample, or per half cycle): half a cycle cannot be told from its mirror.
+const HIGHEST: f64 = 0.45;
 
-/// Whether the half swings of `record` rise and fall as those of two modes do: a modulation leaves less than a fifth of
-/// the squares. (Of two modes it left up to a tenth, after a push in motion more than a third.)
-pub(crate) fn beats(record: &Record) -> bool {
+/// True if the half cycles rise and fall like those of two modes: a modulation leaves less than a fifth of the
+/// squares. (Of two modes it left up to a tenth, after a push in motion more than a third.)
+pub(crate) fn beats(examination: &Examination) -> bool {
     let beats = |modulation: Modulation| modulation.residuals.0 < EXPLAINED * modulation.residuals.1;
     let modulation = |motion: Motion| {
         let heights = motion.large();
         Modulation::of(heights).filter(|modulation| modulation.is_significant(heights.len()))
     };
-    Motion::of(record).and_then(modulation).is_some_and(beats)
+    Motion::of(examination).and_then(modulation).is_some_and(beats)
 }
 
-impl SecondMode {
-    /// Looks for a second mode in `record`; `None` if the record shows one vibration that decays.
-    ///
-    /// There are two signs. A mode far from the first has a line of its own in the spectrum of the motion, or of its
-    /// first half, quarter or eighth. The line must stand above the noise as in [`hum`](crate::hum()) and have 1 % of
-    /// the motion at least. At multiples of the first frequency friction and nonlinear restoring forces have harmonics;
-    /// there it must be larger than harmonics of friction are. (If the period changes with the amplitude, time is
-    /// measured in half swings.)
-    ///
-    /// A mode near to the first makes the half swings larger and smaller by turns. A cubic in their number k for
-    /// their heights, the logarithms or the inverses of them describes a decay by dry friction, viscous or quadratic
-    /// damping. About the nearest of these, h, a modulation is fitted:
-    ///
-    /// ```text
-    /// h (1 + c₀ + c₁ k + c₂ k² + c₃ k³ + a cos 2πνk + b sin 2πνk)
-    /// ```
-    ///
-    /// The beat counts if there are ten half swings or more, if √(a² + b²) exceeds 2 %, and the sum of squared
-    /// residuals falls by so much that noise does the same in one record of a hundred (by Fisher's F). Beats of fewer
-    /// cycles than 1.8 count if half swings rise by a tenth. The frequency is that of n f (1 ± 2ν/n), n odd, where
-    /// the spectrum is largest.
-    ///
-    /// In 4000 simulated decays with friction and damping of many kinds, two showed one of the signs. Of modes with a
-    /// share of a tenth or more, 25 % and more away from the first, nineteen of twenty were found in 16 half swings or
-    /// more; in fewer, a mode near to the first is mostly missed.
-    ///
-    /// ```
-    /// use fmm_record::{Quantity, Record, SecondMode};
-    /// use std::f64::consts::TAU;
-    ///
-    /// let at = |t: f64| (-0.3 * t).exp() * ((TAU * 2.2 * t).sin() + 0.1 * (TAU * 2.7 * t).sin());
-    /// let record = Record::sampled(500.0, (0..5000).map(|i| at(f64::from(i) / 500.0)).collect(), Quantity::Velocity, "m/s")?;
-    ///
-    /// let second = SecondMode::of(&record).unwrap();
-    /// assert!((second.frequency - 2.7).abs() < 0.05 && (second.share - 0.1).abs() < 0.03);
-    /// # Ok::<(), fmm_record::RecordError>(())
-    /// ```
-    pub fn of(record: &Record) -> Option<Self> {
-        let motion = Motion::of(&record.in_at_most(MOST_SAMPLES))?;
+impl Examination<'_> {
+    /// A second mode beside the first.
+    pub fn second_mode(&self) -> Option<SecondMode> {
+        let motion = match self.record().in_at_most(MOST_SAMPLES) {
+            Cow::Borrowed(_) => Motion::of(self)?,
+            Cow::Owned(survey) => Motion::of(&Examination::of(survey))?,
+        };
         motion.line().or_else(|| motion.beat())
     }
 }
@@ -104,22 +99,22 @@ struct Motion {
     frequency: f64,
     /// Periods per second, on average.
     rate: f64,
-    /// Heights of the half swings.
+    /// Heights of the half cycles.
     heights: Vec<f64>,
 }
 
 impl Motion {
-    fn of(record: &Record) -> Option<Self> {
-        let swings = Swings::of(record);
+    fn of(examination: &Examination) -> Option<Self> {
+        let (record, swings) = (examination.record(), examination.swings());
         let peaks = swings.peaks();
         let (first, last) = (peaks.first()?, peaks.last()?);
-        let values = without_spikes(record).get(first.index..=last.index)?.to_vec();
+        let values = examination.bridged().record().values().get(first.index..=last.index)?.to_vec();
         let heights: Vec<f64> = peaks.windows(2).map(|pair| (pair[1].value - pair[0].value).abs()).collect();
         let rate = 0.5 * heights.len() as f64 / (last.time - first.time);
         let (times, around) = swings.turns(record.quantity());
         let warped = period_change(&times, &around).map(|_| {
             let knots: Vec<f64> = times.iter().map(|time| (time - first.time) * record.rate()).collect();
-            in_half_swings(&values, &knots)
+            in_half_cycles(&values, &knots)
         });
         let (values, frequency) = match warped {
             Some(warped) => warped,
@@ -162,7 +157,7 @@ impl Motion {
         cosine.hypot(sine)
     }
 
-    /// A modulation of the half swings.
+    /// A modulation of the half cycles.
     fn beat(&self) -> Option<SecondMode> {
         let heights = self.large();
         if let Some(modulation) = Modulation::of(heights)
@@ -173,38 +168,38 @@ impl Motion {
         rise(heights).map(|(nu, share)| self.beside(nu, share))
     }
 
-    /// Heights of the half swings that friction changes at a steady rate. The last one may end where it stops them.
+    /// Heights of the half cycles that friction changes at a steady rate. The last one may end where it stops them.
     fn large(&self) -> &[f64] {
         let all = &self.heights[..self.heights.len().saturating_sub(1)];
         let count = all.iter().take(MOST).rposition(|height| *height > SMALL * all[0]).map_or(0, |last| last + 1);
         &all[..count]
     }
 
-    /// The mode that beats with the first in `nu` cycles per half swing.
+    /// The mode that beats with the first in `nu` cycles per half cycle.
     fn beside(&self, nu: f64, share: f64) -> SecondMode {
-        // Half swings do not tell modes apart whose frequencies differ by two of the motion.
-        const HIGHEST: u32 = 9;
-        let factors = (1..=HIGHEST).step_by(2).flat_map(|n| [f64::from(n) + 2.0 * nu, (f64::from(n) - 2.0 * nu).abs()]);
+        // Half cycles do not tell modes apart whose frequencies differ by two of the motion.
+        const LAST: u32 = 9;
+        let factors = (1..=LAST).step_by(2).flat_map(|n| [f64::from(n) + 2.0 * nu, (f64::from(n) - 2.0 * nu).abs()]);
         let shown = factors
             .map(|factor| factor * self.frequency)
-            .filter(|frequency| *frequency < 0.45)
+            .filter(|frequency| *frequency < HIGHEST)
             .map(|frequency| (frequency, self.amplitude(self.values.len(), frequency)))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         self.second(shown.map_or(self.frequency, |(frequency, _)| frequency), share)
     }
 }
 
-/// Heights of half swings k with functions of k and of s from −1 to 1.
+/// Heights of half cycles k with functions of k and of s from −1 to 1.
 fn points<const P: usize>(heights: &[f64], functions: impl Fn(f64, f64) -> [f64; P]) -> Vec<(f64, f64, [f64; P])> {
     let middle = (heights.len() - 1) as f64 / 2.0;
     let at = |(k, height): (usize, &f64)| (1.0, *height, functions(k as f64, (k as f64 - middle) / middle));
     heights.iter().enumerate().map(at).collect()
 }
 
-/// Half swings that become larger and smaller by turns.
+/// Half cycles that become larger and smaller by turns.
 #[derive(Debug, Clone, Copy)]
 struct Modulation {
-    /// Cycles per half swing.
+    /// Cycles per half cycle.
     nu: f64,
     /// Of the height (1).
     share: f64,
@@ -217,7 +212,6 @@ impl Modulation {
     /// The modulation that leaves the least residual about a cubic.
     fn of(heights: &[f64]) -> Option<Self> {
         const STEPS: f64 = 8.0;
-        const HIGHEST: f64 = 0.45;
         let count = heights.len();
         if count < FEWEST {
             return None;
@@ -242,7 +236,7 @@ impl Modulation {
             .min_by(|a, b| a.residuals.0.total_cmp(&b.residuals.0))
     }
 
-    /// Whether noise would seldom do the same: F of two coefficients exceeds x with the probability (1 + 2x/ν)^(−ν/2).
+    /// True if noise alone would seldom do this: F of two coefficients exceeds x with the probability (1 + 2x/ν)^(−ν/2).
     fn is_significant(&self, count: usize) -> bool {
         let (with, without) = self.residuals;
         let f = 0.5 * (without - with) / (with / self.freedom);
@@ -251,10 +245,10 @@ impl Modulation {
     }
 }
 
-/// Heights of half swings without a beat: a cubic for themselves, their logarithms or their inverses, whichever is
+/// Heights of half cycles without a beat: a cubic for themselves, their logarithms or their inverses, whichever is
 /// nearest. Dry friction, viscous and quadratic damping make one of them a straight line.
 fn trend(heights: &[f64]) -> Option<Vec<f64>> {
-    /// How a height becomes its form, the slope there, and how the form becomes a height.
+    /// From a height to its form, the slope there, and back from the form to a height.
     type Form = (fn(f64) -> f64, fn(f64) -> f64, fn(f64) -> f64);
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
     let forms: [Form; 3] =
@@ -274,7 +268,7 @@ fn trend(heights: &[f64]) -> Option<Vec<f64>> {
     best.map(|(_, curve)| curve)
 }
 
-/// Cycles per half swing and share of a beat that makes the half swings, in pairs, larger again, if one does: half a
+/// Cycles per half cycle and share of a beat that makes the half cycles, in pairs, larger again, if one does: half a
 /// cycle from the smallest to the largest after it.
 fn rise(heights: &[f64]) -> Option<(f64, f64)> {
     let pairs: Vec<f64> = heights.windows(2).map(|pair| pair[0] + pair[1]).collect();
@@ -292,8 +286,8 @@ fn rise(heights: &[f64]) -> Option<(f64, f64)> {
     best
 }
 
-/// The values at equal parts of half swings, whose ends are at `knots` (samples), and the periods per value.
-fn in_half_swings(values: &[f64], knots: &[f64]) -> (Vec<f64>, f64) {
+/// The values at equal parts of half cycles, whose ends are at `knots` (samples), and the periods per value.
+fn in_half_cycles(values: &[f64], knots: &[f64]) -> (Vec<f64>, f64) {
     let last = knots.len().saturating_sub(1);
     let parts = ((knots[last] - knots[0]) / last as f64).ceil().max(8.0) as usize;
     let at = |k: usize, part: usize| knots[k] + (knots[k + 1] - knots[k]) * part as f64 / parts as f64;
@@ -308,15 +302,18 @@ fn in_half_swings(values: &[f64], knots: &[f64]) -> (Vec<f64>, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::examination::further_release::further_releases;
-    use crate::examination::hum::hum;
+    use crate::examination::further_release::FurtherRelease;
+    use crate::record::Record;
     use crate::tests::synthetic::{Noise, Recorded, measured_records, released_twice, sampled, with_hum};
     use crate::units::Quantity;
-    use crate::without_lines;
+
+    fn further_releases(record: &Record) -> Vec<FurtherRelease> {
+        Examination::of(record).further_releases()
+    }
 
     /// Two modes that decay, the second of a frequency and amplitude relative to the first.
-    fn two_modes(half_swings: f64, factor: f64, share: f64, noise: f64) -> Record {
-        let duration = half_swings / 4.4;
+    fn two_modes(half_cycles: f64, factor: f64, share: f64, noise: f64) -> Record {
+        let duration = half_cycles / 4.4;
         sampled(300.0, duration, Quantity::Velocity, noise, |t| {
             (-t / duration).exp() * ((TAU * 2.2 * t + 0.3).cos() + share * (TAU * 2.2 * factor * t + 1.0).cos())
         })
@@ -325,19 +322,19 @@ mod tests {
     #[test]
     fn measured_records_have_none() {
         for record in measured_records() {
-            assert_eq!(SecondMode::of(&record), None);
+            assert_eq!(Examination::of(&record).second_mode(), None);
         }
         let record = released_twice();
         let sound = record.crop(0.0, further_releases(&record)[0].sound_until).unwrap();
-        assert_eq!(SecondMode::of(&sound), None);
+        assert_eq!(Examination::of(&sound).second_mode(), None);
         let record = with_hum();
-        assert_eq!(SecondMode::of(&without_lines(&record, &hum(&record))), None);
+        assert_eq!(Examination::of(&Examination::of(&record).without_hum()).second_mode(), None);
     }
 
     #[test]
     fn single_decays_have_none() {
         for seed in 0..300 {
-            assert_eq!(SecondMode::of(&Recorded::random(seed).record), None, "seed {seed}");
+            assert_eq!(Examination::of(&Recorded::random(seed).record).second_mode(), None, "seed {seed}");
         }
     }
 
@@ -347,7 +344,9 @@ mod tests {
             for factor in [0.6, 0.8, 1.2, 1.4, 1.7, 2.6, 4.3, 7.4] {
                 for share in [0.1, 0.2] {
                     let record = two_modes(30.0, factor, share, noise);
-                    let found = SecondMode::of(&record).unwrap_or_else(|| panic!("{factor}, {share}, noise {noise}"));
+                    let found = Examination::of(&record)
+                        .second_mode()
+                        .unwrap_or_else(|| panic!("{factor}, {share}, noise {noise}"));
                     // A fifth of the resolution of the whole motion, in units of f.
                     assert!((found.frequency / 2.2 - factor).abs() < 0.05, "{factor}, {share}: {found:?}");
                     assert!((found.share / share - 1.0).abs() < 0.4, "{factor}, {share}: {found:?}");
@@ -358,8 +357,8 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_beat_is_found_where_half_swings_rise() {
-        let found = SecondMode::of(&two_modes(30.0, 1.1, 0.5, 0.01)).unwrap();
+    fn a_slow_beat_is_found_where_half_cycles_rise() {
+        let found = Examination::of(&two_modes(30.0, 1.1, 0.5, 0.01)).second_mode().unwrap();
         assert!((found.frequency / 2.2 - 1.0).abs() < 0.2 && found.share > 0.1, "{found:?}");
     }
 
@@ -367,7 +366,7 @@ mod tests {
     fn what_does_not_oscillate_has_none() {
         for length in [1, 20, 2000] {
             let record = Record::sampled(100.0, vec![1.0; length], Quantity::Velocity, "1").unwrap();
-            assert_eq!(SecondMode::of(&record), None);
+            assert_eq!(Examination::of(&record).second_mode(), None);
         }
     }
 

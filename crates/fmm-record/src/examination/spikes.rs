@@ -1,14 +1,17 @@
 //! Single samples that do not belong to the motion: spikes and drop-outs.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::examination::noise::noise;
-use crate::examination::quantisation::quantisation_step;
+use crate::examination::Examination;
 use crate::numerics::{quantile, range};
 use crate::record::Record;
 
-/// Up to three samples in a row that stand off the motion around them.
+/// Spike or drop-out: up to three samples in a row that stand off the motion around them.
+///
+/// A sample is off if it differs from the median of the seven samples around it by more than eight standard
+/// deviations of the noise, three steps of the converter, 0.1 % of the record's range, and four times the difference
+/// that all but one sample in 200 have. The last limit passes a fast motion or its sharp onset. The first and last
+/// three samples are not judged. A pulse of up to three samples in a force record is a spike in this sense.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Spike {
@@ -27,29 +30,11 @@ const SIDE: usize = 3;
 /// Longest spike (samples). Anything longer may be motion.
 const LONGEST: usize = SIDE;
 
-/// Spikes and drop-outs of one to three samples.
-///
-/// A sample is off if it differs from the median of the seven samples around it by more than eight standard
-/// deviations of the noise, three steps of the converter, 0.1 % of the record's range, and four times what all but
-/// one sample in 200 differ. The last of these lets pass what a fast motion or its sharp onset does by itself. The
-/// first and last three samples are not judged. A pulse of up to three samples in a force record is a spike in this
-/// sense.
-///
-/// ```
-/// use fmm_record::{Quantity, Record, spikes};
-///
-/// let mut values: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.01).sin()).collect();
-/// values[500] += 0.3;
-/// values[501] += 0.2;
-/// let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s")?;
-/// let found = spikes(&record);
-/// assert_eq!((found.len(), found[0].index, found[0].count), (1, 500, 2));
-/// assert!((found[0].height - 0.3).abs() < 1e-3);
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-pub fn spikes(record: &Record) -> Vec<Spike> {
+/// Spikes of a record.
+pub(crate) fn spikes(examination: &Examination) -> Vec<Spike> {
+    let record = examination.record();
     let values = record.values();
-    runs(values)
+    runs(values, examination.noise(), examination.step())
         .into_iter()
         .map(|run| {
             let height = run
@@ -61,20 +46,17 @@ pub fn spikes(record: &Record) -> Vec<Spike> {
         .collect()
 }
 
-/// The values of a record with its spikes bridged by straight lines.
-pub(crate) fn without_spikes(record: &Record) -> Cow<'_, [f64]> {
-    let values = record.values();
-    let runs = runs(values);
-    if runs.is_empty() {
-        return Cow::Borrowed(values);
-    }
-    let mut bridged = values.to_vec();
-    for run in runs {
+/// The record of an examination with its spikes bridged by straight lines.
+pub(crate) fn without_spikes(examination: &Examination) -> Record {
+    let record = examination.record();
+    let mut values = record.values().to_vec();
+    for Spike { index, count, .. } in examination.spikes() {
+        let run = *index..index + count;
         for i in run.clone() {
-            bridged[i] = between(values, &run, i);
+            values[i] = between(record.values(), &run, i);
         }
     }
-    Cow::Owned(bridged)
+    record.derived(record.start(), values)
 }
 
 /// The straight line across a run of samples, at sample `i`. The run touches neither end of the values.
@@ -84,8 +66,8 @@ fn between(values: &[f64], run: &Range<usize>, i: usize) -> f64 {
     values[before] + part * (values[after] - values[before])
 }
 
-/// Runs of samples that are off.
-fn runs(values: &[f64]) -> Vec<Range<usize>> {
+/// Runs of samples that are off, in values of this noise and step of the converter.
+fn runs(values: &[f64], noise: f64, step: f64) -> Vec<Range<usize>> {
     const MOST: usize = 1 << 17;
     const COMMON: f64 = 0.995;
     const VISIBLE: f64 = 1e-3;
@@ -96,10 +78,7 @@ fn runs(values: &[f64]) -> Vec<Range<usize>> {
     let off = |i: usize| (values[i] - median_around(values, i)).abs();
     let mut some: Vec<f64> = judged.clone().step_by(judged.len().div_ceil(MOST)).map(off).collect();
     let (low, high) = range(values);
-    let limit = (8.0 * noise(values))
-        .max(3.0 * quantisation_step(values).unwrap_or(0.0))
-        .max(4.0 * quantile(&mut some, COMMON))
-        .max(VISIBLE * (high - low));
+    let limit = (8.0 * noise).max(3.0 * step).max(4.0 * quantile(&mut some, COMMON)).max(VISIBLE * (high - low));
     let mut suspects: Vec<Range<usize>> = Vec::new();
     for i in judged.filter(|i| off(*i) > limit) {
         match suspects.last_mut() {
@@ -151,6 +130,10 @@ mod tests {
     use super::*;
     use crate::tests::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
     use crate::units::Quantity;
+
+    fn spikes(record: &Record) -> Vec<Spike> {
+        Examination::of(record).spikes().to_vec()
+    }
 
     #[test]
     fn a_stop_an_onset_or_a_peak_is_no_spike() {

@@ -138,7 +138,7 @@ fn weights(segments: &[Segment]) -> impl Iterator<Item = f64> + '_ {
     segments.iter().map(move |segment| segment.weight().min(most))
 }
 
-/// Whether the amplitudes neither rise nor fall.
+/// True if the amplitudes neither rise nor fall.
 fn is_level(segments: &[Segment], amplitude: f64) -> bool {
     let weights: Vec<f64> = weights(segments).collect();
     let points: Vec<(f64, f64)> = segments.iter().map(|segment| (segment.time, segment.amplitude)).collect();

@@ -1,11 +1,10 @@
-//! The swings of an oscillation: its peaks and the crossings of its centre, with sub-sample resolution.
+//! Swings of an oscillation: peaks, crossings of the centre and change of the period, with sub-sample resolution.
 
 use std::f64::consts::PI;
 
+use crate::examination::Examination;
 use crate::examination::harmonic::Harmonic;
 use crate::examination::noise::noise;
-use crate::examination::quantisation::quantisation_step;
-use crate::examination::spikes::without_spikes;
 use crate::examination::turning::turning_points;
 use crate::numerics::least_squares::LeastSquares;
 use crate::numerics::mean;
@@ -22,13 +21,13 @@ pub struct Peak {
     pub value: f64,
     /// The sample nearest to it.
     pub index: usize,
-    /// Whether it is a maximum.
+    /// True for a maximum.
     pub is_maximum: bool,
 }
 
 impl Peak {
     /// u, standard uncertainty of the value of a fitted turning point by white noise of this deviation, in its unit, at
-    /// so many `samples_per_period`: a sine of unknown height, phase and centre scatters by 1.5 σ/√n at its extremum,
+    /// `samples_per_period`: a sine of unknown height, phase and centre scatters by 1.5 σ/√n at its extremum,
     /// as a parabola does.
     pub fn standard_uncertainty(noise: f64, samples_per_period: f64) -> f64 {
         1.5 * noise / Swings::samples_per_point(samples_per_period).sqrt()
@@ -43,22 +42,22 @@ pub struct Crossing {
     pub time: f64,
     /// The centre there, in the unit of the record.
     pub centre: f64,
-    /// Whether the values rise.
+    /// True if the values rise.
     pub is_rising: bool,
 }
 
-/// The half swings of an oscillation about a centre that is unknown and may vary slowly.
+/// The half cycles of an oscillation about a centre that is unknown and may vary slowly.
 ///
 /// The record may have noise, few bits, spikes, an offset of any size, rest before and after, and from four samples
-/// per half swing upwards. The result is the regular oscillation with the largest motion; its neighbouring half swings
+/// per half cycle upwards. The result is the regular oscillation with the largest motion; its neighbouring half cycles
 /// differ in length by less than a factor of two. It begins with the first turning point of the record and
 /// ends with the last one that stands out of the noise; rest after a stop has no turning points.
 ///
-/// Peaks and crossings are fitted: a piece of a sine with the length of the local half swing, to the samples
+/// Peaks and crossings are fitted: a piece of a sine with the length of the local half cycle, to the samples
 /// within ±1/12 period (±1 sample at least). This averages noise and has no bias for a sine, whatever the number of
 /// samples. Dry friction makes a kink where a velocity changes sign; crossings are fitted with one, except those
 /// of a displacement. (The peaks of a displacement have a jump of curvature there, which makes them late by
-/// 0.2 d/A rad for an amplitude A that loses 2d per half swing.) The centre at a crossing comes from the four peaks
+/// 0.2 d/A rad for an amplitude A that loses 2d per half cycle.) The centre at a crossing comes from the four peaks
 /// around it (weights 1, 3, 3, 1), which no linear change of amplitude disturbs.
 ///
 /// ```
@@ -83,34 +82,35 @@ pub struct Swings {
 impl Swings {
     /// The swings of `record`; empty if nothing in it oscillates, and never just one peak.
     pub fn of(record: &Record) -> Self {
-        Self::bridging(record, 0)
+        Self::bridging(&Examination::of(record), 0)
     }
 
-    /// The swings of `record`, with up to `bridged` irregular ones in a row taken along.
-    pub(crate) fn bridging(record: &Record, bridged: usize) -> Self {
-        let values = without_spikes(record);
-        let step = quantisation_step(&values).unwrap_or(0.0);
-        let turning = turning_points(&values, noise_in_motion(&values), step, bridged);
+    /// The swings of a record, with up to `bridged` irregular ones in a row taken along.
+    pub(crate) fn bridging(examination: &Examination, bridged: usize) -> Self {
+        let clean = examination.bridged();
+        let record = clean.record();
+        let values = record.values();
+        let turning = turning_points(values, noise_in_motion(values, clean.noise()), clean.step(), bridged);
         let mut turning = &turning[..];
-        let mut fitted = fit_peaks(&values, turning);
-        // The length of a half swing beside a rest, where noise may turn more than once, is none: all is fitted again.
-        while fitted.len() > 1 && (!begins_moving(&fitted) || begins_held(&values, &fitted)) {
+        let mut fitted = fit_peaks(values, turning);
+        // The length of a half cycle beside a rest, where noise may turn more than once, is none: all is fitted again.
+        while fitted.len() > 1 && (!begins_moving(&fitted) || begins_held(values, &fitted)) {
             turning = &turning[1..];
-            fitted = fit_peaks(&values, turning);
+            fitted = fit_peaks(values, turning);
         }
         if fitted.len() > 1 && !fitted.last().is_some_and(Fitted::turns) {
             turning = &turning[..turning.len() - 1];
-            fitted = fit_peaks(&values, turning);
+            fitted = fit_peaks(values, turning);
         }
         if fitted.len() < 2 {
             return Self::default();
         }
         let peaks: Vec<Peak> = fitted.iter().map(|fit| fit.peak(record)).collect();
-        let crossings = crossings(record, &values, &fitted);
+        let crossings = crossings(record, values, &fitted);
         Self { peaks, crossings }
     }
 
-    /// The turning points, maxima and minima by turns, one per half swing.
+    /// The turning points, maxima and minima by turns, one per half cycle.
     pub fn peaks(&self) -> &[Peak] {
         &self.peaks
     }
@@ -120,8 +120,7 @@ impl Swings {
         &self.crossings
     }
 
-    /// n, samples to which a turning point or a passage is fitted, at so many `samples_per_period`: those within ±1/12
-    /// of it, three at least.
+    /// n, samples to which a turning point or a passage is fitted: those within ±1/12 period, three at least.
     pub fn samples_per_point(samples_per_period: f64) -> f64 {
         (2 * reach(0.5 * samples_per_period) + 1) as f64
     }
@@ -152,10 +151,9 @@ impl Swings {
 
 /// Standard deviation of the white noise where it is loud, but not loudest: a noise that grows with the motion is
 /// larger in the motion than in the rest, and a shock in one part is none.
-fn noise_in_motion(values: &[f64]) -> f64 {
+fn noise_in_motion(values: &[f64], all: f64) -> f64 {
     const PARTS: usize = 8;
     const FEWEST: usize = 100;
-    let all = noise(values);
     if values.len() < PARTS * FEWEST {
         return all;
     }
@@ -175,7 +173,7 @@ struct Fitted {
 }
 
 impl Fitted {
-    /// Whether the values really turn here as in a swing, instead of resting.
+    /// True if the values turn here as in a swing, instead of resting.
     fn turns(&self) -> bool {
         (0.3..3.0).contains(&self.curvature)
     }
@@ -186,7 +184,7 @@ impl Fitted {
     }
 }
 
-/// Samples to either side of a point that a fit uses, for a half swing of `half` samples.
+/// Samples to either side of a point that a fit uses, for a half cycle of `half` samples.
 fn reach(half: f64) -> usize {
     ((half / 6.0).round() as usize).max(1)
 }
@@ -197,7 +195,7 @@ fn around(at: f64, half: f64, length: usize) -> std::ops::Range<usize> {
     centre.saturating_sub(reach(half))..(centre + reach(half) + 1).min(length)
 }
 
-/// Fits every turning point, given to the sample. The lengths of the half swings come from the turning points as
+/// Fits every turning point, given to the sample. The lengths of the half cycles come from the turning points as
 /// given at first, then from the fitted ones.
 fn fit_peaks(values: &[f64], turning: &[usize]) -> Vec<Fitted> {
     let last = turning.len().saturating_sub(1);
@@ -239,7 +237,7 @@ fn fit_peak(values: &[f64], index: usize, is_maximum: bool, half: f64, amplitude
     found
 }
 
-/// Whether the first turning point belongs to the oscillation: its values turn there, and it lies as far from the
+/// True if the first turning point belongs to the oscillation: its values turn there, and it lies as far from the
 /// centre of the swings that follow as they do. The rest before a release does not.
 fn begins_moving(fitted: &[Fitted]) -> bool {
     let first = &fitted[0];
@@ -254,14 +252,15 @@ fn begins_moving(fitted: &[Fitted]) -> bool {
     first.turns() && far
 }
 
-/// Whether the first turning point lies where something is held until it is released, as noise turns anywhere in that:
-/// where the values before it are near it, which in a swing come from the other side, and after a blow from the centre;
-/// or those on the way to the next one, which in a swing have left it by a half to the whole of its height.
+/// True if the machine is still held at the first turning point. While it is held, noise alone makes turning points.
+///
+/// Then the values before the point are near it; in a swing they come from the other side, and after an impact from the
+/// centre. Or the values behind it stay near it; in a swing they leave it by a half to the whole of its height.
 fn begins_held(values: &[f64], fitted: &[Fitted]) -> bool {
     let [first, second, ..] = fitted else { return false };
     let half = second.at - first.at;
     let centre = centre(fitted, 0);
-    // Height of the mean over a part of the way from one half swing before to the next turning point.
+    // Height of the mean over a part of the way from one half cycle before to the next turning point.
     let height = |from: f64, to: f64| {
         let (from, to) = ((first.at + from * half).max(0.0), first.at + to * half);
         let is_enough = to - from >= (0.25 * half).max(1.0);
@@ -330,11 +329,12 @@ fn passage(values: &[f64], from: &Fitted, to: &Fitted, centre: f64) -> f64 {
 
 /// Fewest turning points: four of them determine the curve.
 const FEWEST: usize = 7;
-/// Change of the period that a good spring does not show (1).
+/// Change of the period that a good spring does not show (1), by judgement.
 const LARGE: f64 = 5e-3;
-/// The periods of one part in so many are averaged at either end.
+/// Parts of the turning points; the periods of the first and the last part are averaged (1).
 const PARTS: usize = 6;
-/// Quantiles of Student's t for a two-sided probability of 0.001, by degrees of freedom from 1 on.
+/// Quantiles of Student's t for a two-sided probability of 0.001, by degrees of freedom from 1 on (1). A table, as
+/// statrs would be the only dependency of the crate for one quantile.
 const STUDENT: [f64; 12] = [636.6, 31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59, 4.44, 4.32];
 
 /// Relative change of the period (1) from the first sixth of the turning points to the last; `None` if it is not
@@ -344,7 +344,7 @@ const STUDENT: [f64; 12] = [636.6, 31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.
 /// decay.)
 ///
 /// `times` (s) are those at which the velocity changes its sign: neither viscous damping nor dry friction changes the
-/// time between two of them. `swings` are the heights of the half swings there, in the unit of the record: noise shifts
+/// time between two of them. `swings` are the heights of the half cycles there, in the unit of the record: noise shifts
 /// a turn in inverse proportion. [`Swings::turns`](crate::Swings::turns) gives both. With s from −1 at the first turn k
 /// = 0 to 1 at the last,
 ///
@@ -404,7 +404,7 @@ pub fn period_change(times: &[f64], swings: &[f64]) -> Option<f64> {
 }
 
 impl Swings {
-    /// Times (s) at which the velocity changes its sign, in a record of `quantity`, and the height of the half swing
+    /// Times (s) at which the velocity changes its sign, in a record of `quantity`, and the height of the half cycle
     /// around each, in the unit of the record: peaks of a displacement, crossings of anything else.
     pub fn turns(&self, quantity: Quantity) -> (Vec<f64>, Vec<f64>) {
         let heights = self.peaks().windows(2).map(|pair| (pair[1].value - pair[0].value).abs());
@@ -427,13 +427,13 @@ mod tests {
 
     const DECAY: CoulombDecay = CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.13, release: 0.3 };
 
-    /// Turning points of the displacement: ±(A − 2kd) at k half swings after the release.
+    /// Turning points of the displacement: ±(A − 2kd) at k half cycles after the release.
     #[test]
     fn displacement_with_friction_has_its_peaks() {
         for noise in [0.0, 1e-3, 0.05] {
             let record = sampled(1000.0, 20.0, Quantity::Displacement, noise, |t| 15.0 + DECAY.state(t).0);
             let swings = Swings::of(&record);
-            // 38 half swings; the one at the release has no extremum, the one at the stop does not turn.
+            // 38 half cycles; the one at the release has no extremum, the one at the stop does not turn.
             assert!((36..=37).contains(&swings.peaks().len()), "{} peaks", swings.peaks().len());
             for (k, peak) in swings.peaks().iter().enumerate().map(|(i, peak)| (i as f64 + 1.0, peak)) {
                 let side = if peak.is_maximum { 1.0 } else { -1.0 };
@@ -473,7 +473,7 @@ mod tests {
     }
 
     #[test]
-    fn four_samples_per_half_swing_are_enough() {
+    fn four_samples_per_half_cycle_are_enough() {
         let record =
             sampled(8.0 * 2.2 + 0.1, 60.0, Quantity::Velocity, 0.0, |t| 1.5 + (-0.02 * t).exp() * (13.823 * t).cos());
         let swings = Swings::of(&record);
@@ -481,7 +481,7 @@ mod tests {
         assert!((swings.frequency().unwrap() - 2.2).abs() < 1e-4, "{:?} Hz", swings.frequency());
         for peak in swings.peaks() {
             let height = (peak.value - 1.5).abs() / (-0.02 * peak.time).exp();
-            // The local half swing is known to the sample only, which shows in second order.
+            // The local half cycle is known to the sample only, which shows in second order.
             assert!((height - 1.0).abs() < 0.02, "{height} at {} s", peak.time);
         }
     }
@@ -610,9 +610,9 @@ mod tests {
         assert_eq!(alarms, 0);
     }
 
-    /// A half period that falls by 12 % over 8 to 15 half swings, whose times have noise.
+    /// A half period that falls by 12 % over 8 to 15 half cycles, whose times have noise.
     #[test]
-    fn a_fall_is_found_in_few_half_swings() {
+    fn a_fall_is_found_in_few_half_cycles() {
         for count in [9, 12, 16] {
             for seed in 0..20 {
                 let random = &mut Noise::new(seed);
@@ -635,11 +635,11 @@ mod tests {
     /// A decay of constant period with noise, and with drift, a walk of the offset or hum beside it.
     fn disturbed(seed: u64) -> Record {
         let random = &mut Noise::new(seed);
-        let half_swings = 8.0 + 30.0 * random.uniform();
-        let decay = Decay { creep: None, ..Decay::random(random, half_swings) };
+        let half_cycles = 8.0 + 30.0 * random.uniform();
+        let decay = Decay { creep: None, ..Decay::random(random, half_cycles) };
         let noise = 1e-3 * 20f64.powf(random.uniform());
         let rate = 100.0 * 10f64.powf(random.uniform());
-        let count = (half_swings / 4.4 * (0.4 + 1.5 * random.uniform()) * rate) as usize;
+        let count = (half_cycles / 4.4 * (0.4 + 1.5 * random.uniform()) * rate) as usize;
         let (is_displacement, kind) = (random.uniform() < 0.5, random.next() % 4);
         let (mut drift, slowness, phase) = (0.0, 1.0 - 2.0 / rate, random.uniform());
         let values = decay.states(rate.recip(), count).into_iter().enumerate().map(|(i, (x, v))| {

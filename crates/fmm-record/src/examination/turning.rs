@@ -10,25 +10,25 @@ const ABOVE_NOISE: f64 = 10.0;
 const ABOVE_STEP: f64 = 2.0;
 /// Largest height that rounding alone makes, relative to the range of the values.
 const ABOVE_ROUNDING: f64 = 1e-9;
-/// Neighbouring half swings of one oscillation differ in length by no more than this factor.
+/// Neighbouring half cycles of one oscillation differ in length by no more than this factor.
 const REGULARITY: f64 = 2.0;
 /// Largest ripple on a swing, relative to the swings around it.
 const RIPPLE: f64 = 0.2;
 
 /// The alternating turning points of the longest regular oscillation in `values`, by index.
 ///
-/// First the length of a half swing is found, from the largest swings: with a threshold that sinks from a quarter
+/// First the length of a half cycle is found, from the largest swings: with a threshold that sinks from a quarter
 /// of the range until six regular turning points appear, and with more smoothing if none do. Then all swings
 /// are found, after smoothing over an eighth of that length, with the threshold that noise, resolution and the
 /// range of the values near by allow.
-/// Up to `bridged` irregular half swings in a row are taken along if regular ones go on behind them.
+/// Up to `bridged` irregular half cycles in a row are taken along if regular ones go on behind them.
 pub(crate) fn turning_points(values: &[f64], noise: f64, step: f64, bridged: usize) -> Vec<usize> {
     let (low, high) = range(values);
     let floor = |half: usize| {
         let averaged = (2 * half + 1) as f64;
         (ABOVE_NOISE * noise / averaged.sqrt()).max(ABOVE_STEP * step).max(ABOVE_ROUNDING * (high - low))
     };
-    let Some(length) = half_swing(values, high - low, floor) else { return Vec::new() };
+    let Some(length) = half_cycle(values, high - low, floor) else { return Vec::new() };
     let half = length / 16;
     let smooth = averaged(values, half, EndRule::Shrinking);
     let local = local_ranges(&smooth, length);
@@ -37,11 +37,11 @@ pub(crate) fn turning_points(values: &[f64], noise: f64, step: f64, bridged: usi
     longest_regular(&smooth, &found, bridged)
 }
 
-/// Length of a half swing (samples) of the largest regular oscillation; `None` if nothing oscillates.
+/// Length of a half cycle (samples) of the largest regular oscillation; `None` if nothing oscillates.
 ///
 /// Two turning points show no regularity. They are taken all the same if nothing regular is found and the swing between
-/// them spans most of the range: a motion that dry friction stops after two half swings.
-fn half_swing(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Option<usize> {
+/// them spans most of the range: a motion that dry friction stops after two half cycles.
+fn half_cycle(values: &[f64], range: f64, floor: impl Fn(usize) -> f64) -> Option<usize> {
     const ENOUGH: usize = 6;
     const FEWEST: usize = 3;
     const NEXT: f64 = 0.4;

@@ -1,8 +1,12 @@
-//! Upsampling: values that stand several times, or lie on straight lines between others.
+//! Upsampling: samples that repeat others, or lie on straight lines between others.
 
+use crate::examination::Examination;
 use crate::record::Record;
 
-/// Increase of the sampling rate of a record above the rate of its measurement.
+/// Increase of the sampling rate of a record above the rate of its measurement, by held or interpolated samples.
+///
+/// Of held samples all differences, of interpolated ones all second differences, lie at samples of one remainder by the
+/// factor. Both make noise look correlated, and delay the motion. Only whole factors up to 64 are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Upsampling {
@@ -10,7 +14,7 @@ pub struct Upsampling {
     pub factor: usize,
     /// The first sample that was measured; every `factor`-th from it on is one.
     pub first: usize,
-    /// Whether the samples between lie on straight lines; otherwise each repeats the one before.
+    /// True if the samples between lie on straight lines; otherwise each repeats the one before.
     pub is_interpolated: bool,
 }
 
@@ -21,23 +25,10 @@ const FEWEST: usize = 40;
 /// The share of all changes that rounding may leave between measured samples (1).
 const ROUNDING: f64 = 1e-9;
 
-impl Upsampling {
-    /// Looks for held or interpolated samples in `record`; `None` if each sample may have been measured.
-    ///
-    /// Of held samples all differences, of interpolated ones all second differences, lie at each so many-th sample.
-    /// Both make noise look correlated, and delay the motion. Only whole factors up to 64 are found.
-    ///
-    /// ```
-    /// use fmm_record::{Quantity, Record, Upsampling};
-    ///
-    /// let at = |i: i32| (0.1 * f64::from(i / 4)).sin();
-    /// let held = Record::sampled(1000.0, (0..4000).map(at).collect(), Quantity::Velocity, "m/s")?;
-    /// let found = Upsampling::of(&held).unwrap();
-    /// assert_eq!((found.factor, found.first, found.is_interpolated), (4, 0, false));
-    /// assert_eq!(found.measured(&held)?.rate(), 250.0);
-    /// # Ok::<(), fmm_record::RecordError>(())
-    /// ```
-    pub fn of(record: &Record) -> Option<Self> {
+impl Examination<'_> {
+    /// Held or interpolated samples; `None` if each sample may have been measured.
+    pub fn upsampling(&self) -> Option<Upsampling> {
+        let record = self.record();
         let values = record.values();
         // Two identical values say nothing about what lies between them.
         let change = |i: usize| (values[i] - values[i - 1]).abs();
@@ -46,9 +37,11 @@ impl Upsampling {
         let (found, is_interpolated) =
             held.or_else(|| factor(values.len().saturating_sub(1), bend).map(|found| (found, true)))?;
         let (factor, first) = found;
-        Some(Self { factor, first, is_interpolated })
+        Some(Upsampling { factor, first, is_interpolated })
     }
+}
 
+impl Upsampling {
     /// The samples of `record` that were measured.
     ///
     /// # Errors
@@ -103,7 +96,7 @@ mod tests {
         for factor in [2_usize, 3, 10, 50] {
             for first in [0, 1, factor - 1] {
                 let held: Vec<f64> = (0..299 * factor).map(|i| measured[(i + factor - first) / factor]).collect();
-                let found = Upsampling::of(&record(held.clone())).unwrap();
+                let found = Examination::of(&record(held.clone())).upsampling().unwrap();
                 assert_eq!((found.factor, found.first, found.is_interpolated), (factor, first, false));
                 let undone = found.measured(&record(held)).unwrap();
                 assert_eq!(undone.values()[..200], measured[1..201]);
@@ -112,7 +105,7 @@ mod tests {
                     let (whole, part) = ((i + factor - first) / factor, (i + factor - first) % factor);
                     measured[whole] + (measured[whole + 1] - measured[whole]) * part as f64 / factor as f64
                 };
-                let found = Upsampling::of(&record((0..298 * factor).map(between).collect())).unwrap();
+                let found = Examination::of(&record((0..298 * factor).map(between).collect())).upsampling().unwrap();
                 assert_eq!((found.factor, found.first, found.is_interpolated), (factor, first, true));
             }
         }
@@ -120,24 +113,24 @@ mod tests {
 
     #[test]
     fn measured_samples_are_none() {
-        assert_eq!(Upsampling::of(&record(measured(1000))), None);
+        assert_eq!(Examination::of(&record(measured(1000))).upsampling(), None);
         // Steps of a coarse converter repeat values, but not at regular places.
         let coarse: Vec<f64> = measured(4000).iter().map(|value| (value * 20.0).round() / 20.0).collect();
-        assert_eq!(Upsampling::of(&record(coarse)), None);
-        assert_eq!(Upsampling::of(&record((0..500).map(f64::from).collect())), None);
-        assert_eq!(Upsampling::of(&record(vec![1.0; 500])), None);
+        assert_eq!(Examination::of(&record(coarse)).upsampling(), None);
+        assert_eq!(Examination::of(&record((0..500).map(f64::from).collect())).upsampling(), None);
+        assert_eq!(Examination::of(&record(vec![1.0; 500])).upsampling(), None);
         // A dozen steps may lie at regular places by chance.
         let few = |i: usize| if i < 48 { (i / 4) as f64 } else { 12.0 };
-        assert_eq!(Upsampling::of(&record((0..500).map(few).collect())), None);
+        assert_eq!(Examination::of(&record((0..500).map(few).collect())).upsampling(), None);
         // Rest is no repetition of what moves after it.
         let mut late = vec![0.0; 1000];
         late.extend(measured(1000));
-        assert_eq!(Upsampling::of(&record(late)), None);
+        assert_eq!(Examination::of(&record(late)).upsampling(), None);
     }
 
     #[cfg(feature = "mat")]
     #[test]
     fn fork_was_not_resampled() {
-        assert_eq!(Upsampling::of(&crate::tests::synthetic::fork()), None);
+        assert_eq!(Examination::of(&crate::tests::synthetic::fork()).upsampling(), None);
     }
 }

@@ -5,14 +5,14 @@ use crate::files::reading::Reading;
 use crate::sampling::Sampling;
 use crate::units::label::{is_remark, without_groups};
 use crate::units::seconds_in;
-use crate::units::word::words;
+use crate::units::word::{is_in, words};
 
 /// Statement of a name about time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Clock {
-    /// Whether it is called time.
+    /// True if it is called time.
     pub(crate) is_time: bool,
-    /// Whether it is called a number of samples.
+    /// True if it is called a number of samples.
     pub(crate) is_counter: bool,
     unit: Written,
 }
@@ -21,51 +21,22 @@ pub(crate) struct Clock {
 #[derive(Debug, Clone, PartialEq)]
 enum Written {
     Nothing,
-    /// A unit of time of so many seconds.
+    /// A unit of time (s).
     Seconds(f64),
     /// Something else where a unit belongs.
     Other(String),
 }
 
 /// Words for time.
-const TIMES: [&str; 10] =
-    ["time", "times", "zeit", "timestamp", "timestamps", "zeitstempel", "elapsed", "uptime", "temps", "tiempo"];
+const TIMES: &str = "time times zeit timestamp timestamps zeitstempel elapsed uptime temps tiempo";
 
 /// Words that may stand beside one for time.
-const FILLERS: [&str; 16] = [
-    "stamp", "stamps", "rel", "relative", "abs", "absolute", "total", "since", "start", "system", "device", "sensor",
-    "axis", "vector", "values", "in",
-];
+const FILLERS: &str =
+    "stamp stamps rel relative abs absolute total since start system device sensor axis vector values in";
 
 /// Words for a number of samples.
-const COUNTERS: [&str; 26] = [
-    "sample",
-    "samples",
-    "index",
-    "idx",
-    "ind",
-    "frame",
-    "frames",
-    "row",
-    "rows",
-    "scan",
-    "scans",
-    "point",
-    "points",
-    "sequence",
-    "seq",
-    "number",
-    "num",
-    "no",
-    "nr",
-    "id",
-    "counter",
-    "record",
-    "line",
-    "unnamed",
-    "messwert",
-    "datensatz",
-];
+const COUNTERS: &str = "sample samples index idx ind frame frames row rows scan scans point points sequence seq number num no nr \
+    id counter record line unnamed messwert datensatz";
 
 impl Clock {
     /// Clock of a column without a name.
@@ -78,39 +49,38 @@ impl Clock {
     pub(crate) fn of(name: &str) -> Self {
         let (stem, unit, in_brackets) = unit_of_time(name);
         let stem_words = words(&stem);
-        let one_of = |list: &[&str], word: &String| list.contains(&&**word);
-        let has_time = stem_words.iter().any(|word| one_of(&TIMES, word));
-        let only_time = has_time && stem_words.iter().all(|word| one_of(&TIMES, word) || one_of(&FILLERS, word));
+        let has_time = stem_words.iter().any(|word| is_in(TIMES, word));
+        let only_time = has_time && stem_words.iter().all(|word| is_in(TIMES, word) || is_in(FILLERS, word));
         let is_known = matches!(unit, Written::Seconds(_));
         // A letter may stand for temperature or torque, which have other units.
         let is_letter = stem.trim().eq_ignore_ascii_case("t") && !matches!(unit, Written::Other(_));
-        let begins = stem_words.first().is_some_and(|word| one_of(&TIMES, word));
+        let begins = stem_words.first().is_some_and(|word| is_in(TIMES, word));
         let is_bare_unit = is_known && stem_words.is_empty();
         let is_time = only_time || is_letter || is_bare_unit || (begins && is_known && in_brackets);
         let is_nameless = matches!(stem.trim(), "" | "#");
-        let counts = !stem_words.is_empty() && stem_words.iter().all(|word| one_of(&COUNTERS, word));
-        let unit_counts = matches!(&unit, Written::Other(unit) if !words(unit).is_empty() && words(unit).iter().all(|word| one_of(&COUNTERS, word)));
+        let counts = !stem_words.is_empty() && stem_words.iter().all(|word| is_in(COUNTERS, word));
+        let unit_counts = matches!(&unit, Written::Other(unit) if !words(unit).is_empty() && words(unit).iter().all(|word| is_in(COUNTERS, word)));
         let is_counter = !is_time && !is_known && (is_nameless || counts || unit_counts);
         Self { is_time, is_counter, unit }
     }
 
-    /// Whether it is called time, in a unit that is known or not written.
+    /// True if it is called time, in a unit that is known or not written.
     pub(crate) fn is_known_time(&self) -> bool {
         self.is_time && !matches!(self.unit, Written::Other(_))
     }
 
-    /// Whether a series that is not called time may be it.
+    /// True if it may be time under another name.
     pub(crate) fn may_be_time(&self) -> bool {
         self.is_time || self.is_counter || !matches!(self.unit, Written::Other(_))
     }
 
-    /// Whether uniform numbers count samples: whole ones in no unit.
+    /// True if uniform numbers count samples: whole ones in no unit.
     pub(crate) fn counts(&self, numbers: &[f64]) -> bool {
         self.unit == Written::Nothing && are_whole(numbers)
     }
 
-    /// Brings the time stamps of the series called `name` to seconds; `by_nature` tells that nobody called it time, but
-    /// that it increases uniformly.
+    /// Brings the time stamps of the series called `name` to seconds; `by_nature` is true if it is time only because it
+    /// increases uniformly.
     ///
     /// # Errors
     /// [`RecordError::TimeAxis`] if something else is written where the unit belongs, or if they
@@ -164,7 +134,7 @@ pub(crate) fn counter(name: &str) -> RecordError {
     RecordError::time(None, what)
 }
 
-/// Whether all numbers are whole, as those that count samples are.
+/// True if all numbers are whole, like those that count samples.
 pub(crate) fn are_whole(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| number.fract() == 0.0)
 }
@@ -195,7 +165,7 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
     {
         let stem = bare[..bare.len() - last.len()].trim_end_matches(|sign: char| !sign.is_alphanumeric());
         // Of anything but time these are other things: `v_ms` is a velocity, `x_min` a minimum.
-        if stem.eq_ignore_ascii_case("t") || words(stem).iter().any(|word| TIMES.contains(&&**word)) {
+        if stem.eq_ignore_ascii_case("t") || words(stem).iter().any(|word| is_in(TIMES, word)) {
             return (stem.to_owned(), Written::Seconds(seconds), false);
         }
     }
@@ -203,31 +173,11 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
 }
 
 /// Names of scalars that hold a rate (Hz), in lower case and without underscores.
-const RATES: [&str; 9] = [
-    "fs",
-    "rate",
-    "actualrate",
-    "samplerate",
-    "samplingrate",
-    "samplefrequency",
-    "samplingfrequency",
-    "fsample",
-    "fsampling",
-];
+const RATES: &str = "fs rate actualrate samplerate samplingrate samplefrequency samplingfrequency fsample fsampling";
 
 /// Names of scalars that hold an interval (s), in lower case and without underscores.
-const INTERVALS: [&str; 10] = [
-    "dt",
-    "ts",
-    "deltat",
-    "deltax",
-    "xincrement",
-    "tsample",
-    "sampletime",
-    "samplingtime",
-    "sampleinterval",
-    "samplinginterval",
-];
+const INTERVALS: &str =
+    "dt ts deltat deltax xincrement tsample sampletime samplingtime sampleinterval samplinginterval";
 
 /// Largest difference of two statements of the rate, relative.
 const AGREEMENT: f64 = 1e-3;
@@ -241,8 +191,8 @@ pub(crate) fn stated<'a>(
         // A field is called as its structure is, with its own name behind a point.
         let own = name.rsplit('.').next().unwrap_or(name);
         let plain = own.replace(['_', ' '], "").to_lowercase();
-        let is_interval = INTERVALS.contains(&&plain[..]);
-        if !is_interval && !RATES.contains(&&plain[..]) {
+        let is_interval = is_in(INTERVALS, &plain);
+        if !is_interval && !is_in(RATES, &plain) {
             continue;
         }
         let (rate, sampling) = if is_interval {

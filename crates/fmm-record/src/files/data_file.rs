@@ -142,7 +142,7 @@ impl DataFile {
                 let warning = |(name, reason): &(String, RecordError)| format!("{name} cannot be read: {reason}");
                 file.damaged.iter().map(warning).collect()
             }
-            Content::Universal(file) => file.warnings().iter().map(ToString::to_string).collect(),
+            Content::Universal(file) => file.warnings().to_vec(),
         }
     }
 
@@ -172,7 +172,7 @@ impl DataFile {
     /// (whichever are longer), functions of any kind in a Universal File. Numbers that count samples are no channel.
     ///
     /// # Errors
-    /// What is wrong with the table of a text file.
+    /// Those of the table of a text file.
     pub fn channels(&self) -> Result<Vec<Channel>, RecordError> {
         match &self.content {
             Content::Text(source) => {
@@ -222,7 +222,7 @@ impl DataFile {
     /// The record of the channel that the reader names, or else of the one that is found by default.
     ///
     /// # Errors
-    /// As [`DataFile::channel`].
+    /// Those of [`DataFile::channel`].
     pub fn reading(&self) -> Result<Reading, RecordError> {
         self.read(&self.reader)
     }

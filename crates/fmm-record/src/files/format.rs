@@ -1,4 +1,4 @@
-//! The format of a file, told by its first bytes.
+//! Format of a file by its first bytes.
 
 use crate::error::RecordError;
 
@@ -97,7 +97,7 @@ pub(crate) fn is_matlab_4(head: &[u8]) -> bool {
     })
 }
 
-/// Whether a data set begins here: behind a line of -1 in its six columns the number of a data set, or behind any line
+/// True if a data set begins here: behind a line of -1 in its six columns the number of a data set, or behind any line
 /// of -1 the number 58. A column of numbers has neither.
 fn is_universal(head: &[u8]) -> bool {
     let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).filter(|line| !line.trim_ascii().is_empty());

@@ -29,13 +29,13 @@ pub use format::Format;
 /// Opens a file of measured channels of any format and name: [`Reader::open`] without further statements.
 ///
 /// # Errors
-/// As [`Reader::open`].
+/// Those of [`Reader::open`].
 pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
     Reader::default().open(path)
 }
 
-/// Opens and reads files of every format. The format is told by the content, the name of the file does not matter; what
-/// the file cannot tell is said here. What its format states itself, or does not have, is refused
+/// Opens and reads files of every format. The content shows the format, the name of the file does not matter. A reader
+/// holds the statements that the file lacks; a statement that the format makes itself, or has no place for, is refused
 /// ([`RecordError::Options`]).
 ///
 /// ```
@@ -64,7 +64,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 /// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
 /// | channel | the first column that is neither the time nor called a number of samples |
 ///
-/// Where no column is time, a number above the table that is called an interval or a rate (`Sample Interval`,
+/// If no column is time, a number above the table that is called an interval or a rate (`Sample Interval`,
 /// `Delta_X`) tells the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
 ///
 /// # MATLAB (versions 5 to 7.3, HDF5) and NumPy (npy, npz)
@@ -188,7 +188,7 @@ impl Reader {
     /// Reads the channel from the file at `path`: [`Reader::open`] and [`DataFile::reading`].
     ///
     /// # Errors
-    /// As those.
+    /// Those of both.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<Reading, RecordError> {
         self.open(path)?.reading()
     }
@@ -196,7 +196,7 @@ impl Reader {
     /// Reads the channel from the bytes of a file: [`Reader::parse`] and [`DataFile::reading`].
     ///
     /// # Errors
-    /// As those.
+    /// Those of both.
     pub fn read_from(&self, bytes: impl Into<Vec<u8>>) -> Result<Reading, RecordError> {
         self.parse(bytes)?.reading()
     }

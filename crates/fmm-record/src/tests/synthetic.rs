@@ -31,7 +31,7 @@ impl Noise {
     }
 }
 
-/// Free decay of an oscillator with dry friction, in closed form per half swing.
+/// Free decay of an oscillator with dry friction, in closed form per half cycle.
 ///
 /// ```text
 /// x″ + ω² x = −ω² d sign(x′)
@@ -42,7 +42,7 @@ impl Noise {
 pub(crate) struct CoulombDecay {
     pub(crate) frequency: f64,
     pub(crate) amplitude: f64,
-    /// d, half of what each half swing loses.
+    /// d, half of what each half cycle loses.
     pub(crate) deadband: f64,
     pub(crate) release: f64,
 }
@@ -52,7 +52,7 @@ impl CoulombDecay {
     pub(crate) fn state(&self, t: f64) -> (f64, f64) {
         let w = 2.0 * PI * self.frequency;
         let phase = w * (t - self.release).max(0.0);
-        // Half swing k goes from ±(A − 2kd) to the other side; motion ends when the turning point lies within d.
+        // Half cycle k goes from ±(A − 2kd) to the other side; motion ends when the turning point lies within d.
         let last = ((self.amplitude - self.deadband) / (2.0 * self.deadband)).ceil().max(0.0);
         let k = (phase / PI).floor();
         let side = |k: f64| if k % 2.0 == 0.0 { 1.0 } else { -1.0 };
@@ -82,7 +82,7 @@ impl CoulombDecay {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Decay {
     pub(crate) frequency: f64,
-    /// F_c/ω², half of what a half swing loses.
+    /// F_c/ω², half of what a half cycle loses.
     pub(crate) deadband: f64,
     /// c/(2ω).
     pub(crate) damping: f64,
@@ -136,24 +136,24 @@ impl Decay {
         states
     }
 
-    /// One of the laws with random parameters, which comes to rest, or nearly, after about `half_swings`.
-    pub(crate) fn random(random: &mut Noise, half_swings: f64) -> Self {
+    /// One of the laws with random parameters, which comes to rest, or nearly, after about `half_cycles`.
+    pub(crate) fn random(random: &mut Noise, half_cycles: f64) -> Self {
         let share = random.uniform();
         let smooth = Self {
             frequency: 2.2,
-            deadband: share * 0.5 / half_swings,
-            damping: (1.0 - share) * 0.7 / half_swings,
+            deadband: share * 0.5 / half_cycles,
+            damping: (1.0 - share) * 0.7 / half_cycles,
             quadratic: 0.0,
             rise: 0.0,
             speed: 1.0,
             creep: None,
         };
         match random.next() % 6 {
-            0 => Self { damping: 0.0, deadband: 0.5 / half_swings, ..smooth },
-            1 => Self { damping: 0.7 / half_swings, deadband: 0.0, ..smooth },
+            0 => Self { damping: 0.0, deadband: 0.5 / half_cycles, ..smooth },
+            1 => Self { damping: 0.7 / half_cycles, deadband: 0.0, ..smooth },
             2 => Self { rise: random.uniform(), speed: 0.02 + 0.3 * random.uniform(), ..smooth },
             // Down to 1/3 to 1/12, as 1/(1 + 4qk/3).
-            3 => Self { damping: 0.0, deadband: 0.0, quadratic: (1.5 + 7.0 * share) / half_swings, ..smooth },
+            3 => Self { damping: 0.0, deadband: 0.0, quadratic: (1.5 + 7.0 * share) / half_cycles, ..smooth },
             4 => Self { creep: Some(0.002 + 0.1 * random.uniform()), ..smooth },
             _ => smooth,
         }
@@ -170,14 +170,14 @@ pub(crate) struct Recorded {
 }
 
 impl Recorded {
-    /// Of 3 to 30 half swings in velocity or displacement, with or without rest at both ends, noise of 0.1 % to 3 %
+    /// Of 3 to 30 half cycles in velocity or displacement, with or without rest at both ends, noise of 0.1 % to 3 %
     /// and, sometimes, a converter of few bits.
     pub(crate) fn random(seed: u64) -> Self {
         let random = &mut Noise::new(seed);
-        let half_swings = 3.0 + 27.0 * random.uniform().powi(2);
-        let decay = Decay::random(random, half_swings);
+        let half_cycles = 3.0 + 27.0 * random.uniform().powi(2);
+        let decay = Decay::random(random, half_cycles);
         let rest = if random.uniform() < 0.5 { 0.0 } else { 0.3 + random.uniform() };
-        let duration = rest + half_swings / 4.4 * (0.7 + 1.5 * random.uniform());
+        let duration = rest + half_cycles / 4.4 * (0.7 + 1.5 * random.uniform());
         let rate = 200.0 * 10f64.powf(random.uniform());
         let noise = 1e-3 * 30f64.powf(random.uniform());
         let (before, count) = ((rest * rate) as usize, (duration * rate) as usize);

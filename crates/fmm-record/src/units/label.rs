@@ -1,6 +1,6 @@
-//! The label of a channel: what a file tells in its name, and where the format has a place for it.
+//! Label of a channel: name, unit and quantity as the file states them.
 
-use crate::units::word::Word;
+use crate::units::word::{Word, is_in};
 use crate::units::{Quantity, WrittenUnit};
 
 /// Statement of a file about a channel: the unit, and a word for the quantity.
@@ -57,7 +57,7 @@ impl Label {
         Self { name: name.trim().to_owned(), unit: unit.unwrap_or(Written::Nothing), stated: None, word }
     }
 
-    /// The same label with a unit that the file states beside the name; an empty text leaves it without one.
+    /// This label with a unit that the file states beside the name; an empty text changes nothing.
     #[must_use]
     pub fn with_unit(mut self, unit: &str) -> Self {
         let unit = unit.trim();
@@ -67,7 +67,7 @@ impl Label {
         self
     }
 
-    /// The same with a quantity that the file states; [`Quantity::Other`] states none.
+    /// This label with a quantity that the file states; [`Quantity::Other`] states none.
     #[must_use]
     pub fn with_quantity(mut self, quantity: Quantity) -> Self {
         self.stated = (quantity != Quantity::Other).then_some(quantity);
@@ -94,7 +94,7 @@ impl Label {
         self.quantity_of_unit().or(self.stated).or(self.word.quantity)
     }
 
-    /// The quantity that the unit measures, if it tells one.
+    /// The quantity that has this unit, if the unit shows it.
     pub fn quantity_of_unit(&self) -> Option<Quantity> {
         self.unit().and_then(WrittenUnit::shown_quantity)
     }
@@ -109,12 +109,12 @@ impl Label {
         self.word.quantity.filter(|_| !self.word.is_sensor)
     }
 
-    /// Whether a word tells of rotation.
+    /// True if a word means rotation.
     pub fn is_angular(&self) -> bool {
         self.word.is_angular
     }
 
-    /// Whether SI units without an angle would be a guess, as the name tells of rotation or of a sensor.
+    /// True if SI units without an angle would be a guess: the name has a word for rotation or for a sensor.
     pub(crate) fn needs_unit(&self) -> bool {
         self.word.is_angular || self.word.is_sensor
     }
@@ -180,7 +180,7 @@ fn partner(inside: &str, is_square: bool) -> Option<usize> {
     })
 }
 
-/// The last unit in brackets, or else what is there in its place.
+/// The last unit in brackets, or else the text in its place.
 fn in_groups(groups: &[Group]) -> Option<Written> {
     if let Some(unit) = groups.iter().rev().find_map(|group| group.text.parse().ok()) {
         return Some(Written::Known(unit));
@@ -190,7 +190,7 @@ fn in_groups(groups: &[Group]) -> Option<Written> {
     square.or_else(|| groups.iter().rev().find(may_be_unit)).map(|group| Written::Unknown(group.text.clone()))
 }
 
-/// Whether a text in brackets is no unit: an index, a column, an axis, a sentence.
+/// True for a text in brackets that is no unit: an index, a column, an axis, a sentence.
 pub(crate) fn is_remark(text: &str) -> bool {
     let is_axis = matches!(text, "x" | "y" | "z" | "X" | "Y" | "Z");
     let is_index = text.chars().all(|sign| sign.is_ascii_digit());
@@ -216,17 +216,14 @@ fn behind_slash(bare: &str) -> Option<WrittenUnit> {
 }
 
 /// Units that a suffix or a last word may be, in small letters.
-const SUFFIXES: [&str; 29] = [
-    "mm", "um", "µm", "μm", "micron", "microns", "rad", "mrad", "urad", "deg", "°", "mdeg", "degrees", "radians",
-    "rpm", "dps", "mdps", "mps", "kph", "kmh", "mph", "lbf", "volts", "volt", "counts", "count", "ticks", "lsb", "cts",
-];
+const SUFFIXES: &str = "mm um µm μm micron microns rad mrad urad deg ° mdeg degrees radians rpm dps mdps mps kph kmh mph lbf \
+    volts volt counts count ticks lsb cts";
 
 /// Suffixes that are a unit behind a word for its quantity only: they may be a medium, a mass centre, a measured value.
-const DOUBTFUL: [&str; 6] = ["m", "cm", "km", "g", "mg", "ft"];
+const DOUBTFUL: &str = "m cm km g mg ft";
 
 /// Lengths and angles that a suffix counts per time.
-const PER_TIME: [&str; 15] =
-    ["m", "mm", "cm", "um", "µm", "μm", "nm", "km", "ft", "rad", "mrad", "urad", "deg", "mdeg", "rev"];
+const PER_TIME: &str = "m mm cm um µm μm nm km ft rad mrad urad deg mdeg rev";
 
 /// The unit in the last parts of `vel_mm_s`, `omega_rad_per_s`, `theta_rad`.
 fn behind_underscore(bare: &str, word: Word) -> Option<WrittenUnit> {
@@ -240,7 +237,7 @@ fn behind_underscore(bare: &str, word: Word) -> Option<WrittenUnit> {
         [_, .., _] => return last_part(parts.last()?, word),
         _ => return None,
     };
-    if PER_TIME.contains(&base) { format!("{base}/{time}").parse().ok() } else { None }
+    if is_in(PER_TIME, base) { format!("{base}/{time}").parse().ok() } else { None }
 }
 
 /// The unit that the last part of a name is.
@@ -255,8 +252,8 @@ fn last_part(written: &str, word: Word) -> Option<WrittenUnit> {
         "rads2" | "radps2" => "rad/s2",
         _ if matches!(written, "V" | "mV" | "uV") => written,
         _ if written == "kN" || (written == "N" && word.quantity == Some(Quantity::Force)) => written,
-        _ if SUFFIXES.contains(&lower) => lower,
-        _ if DOUBTFUL.contains(&lower) => {
+        _ if is_in(SUFFIXES, lower) => lower,
+        _ if is_in(DOUBTFUL, lower) => {
             return lower
                 .parse()
                 .ok()

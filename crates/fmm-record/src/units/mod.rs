@@ -182,7 +182,7 @@ fn of_number(unit: &Unit) -> Option<Dimension> {
     unit.dimension(|_| None)
 }
 
-/// As it was written.
+/// The written text.
 impl fmt::Display for WrittenUnit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.written)

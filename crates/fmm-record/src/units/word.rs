@@ -1,4 +1,4 @@
-//! Words in the name of a channel that tell what it measured.
+//! Words in the name of a channel: quantities, sensors, rotation.
 
 use crate::units::Quantity;
 
@@ -7,76 +7,42 @@ use crate::units::Quantity;
 pub(crate) struct Word {
     /// The quantity, if the words agree on one.
     pub(crate) quantity: Option<Quantity>,
-    /// Whether it is a sensor or a symbol, which other words and units overrule.
+    /// True for a sensor or a symbol, which other words and units overrule.
     pub(crate) is_sensor: bool,
-    /// Whether any word tells of rotation.
+    /// True if any word means rotation.
     pub(crate) is_angular: bool,
 }
 
 /// Words for quantities.
-const NAMES: [(&str, Quantity); 17] = [
-    ("velocity", Quantity::Velocity),
-    ("velocities", Quantity::Velocity),
-    ("vel", Quantity::Velocity),
-    ("speed", Quantity::Velocity),
-    ("rate", Quantity::Velocity),
-    ("displacement", Quantity::Displacement),
-    ("disp", Quantity::Displacement),
-    ("displ", Quantity::Displacement),
-    ("position", Quantity::Displacement),
-    ("pos", Quantity::Displacement),
-    ("angle", Quantity::Displacement),
-    ("deflection", Quantity::Displacement),
-    ("acceleration", Quantity::Acceleration),
-    ("accel", Quantity::Acceleration),
-    ("acc", Quantity::Acceleration),
-    ("force", Quantity::Force),
-    ("torque", Quantity::Force),
+const NAMES: [(&str, Quantity); 4] = [
+    ("velocity velocities vel speed rate", Quantity::Velocity),
+    ("displacement disp displ position pos angle deflection", Quantity::Displacement),
+    ("acceleration accel acc", Quantity::Acceleration),
+    ("force torque", Quantity::Force),
 ];
 
-/// Sensors and symbols, and the quantity that they measure or stand for unless something else is said.
-const SENSORS: [(&str, Quantity); 7] = [
-    ("gyro", Quantity::Velocity),
-    ("gyroscope", Quantity::Velocity),
-    ("omega", Quantity::Velocity),
-    ("encoder", Quantity::Displacement),
-    ("theta", Quantity::Displacement),
-    ("phi", Quantity::Displacement),
+/// Sensors and symbols, and the quantity that they measure or stand for if nothing else is known.
+const SENSORS: [(&str, Quantity); 3] = [
+    ("gyro gyroscope omega", Quantity::Velocity),
+    ("encoder theta phi", Quantity::Displacement),
     ("accelerometer", Quantity::Acceleration),
 ];
 
-/// Words that tell of rotation.
-const ANGULAR: [&str; 14] = [
-    "angular",
-    "angle",
-    "ang",
-    "rotation",
-    "rotational",
-    "rotary",
-    "gyro",
-    "gyroscope",
-    "omega",
-    "theta",
-    "phi",
-    "yaw",
-    "pitch",
-    "roll",
-];
+/// Words for rotation.
+const ANGULAR: &str = "angular angle ang rotation rotational rotary gyro gyroscope omega theta phi yaw pitch roll";
 
 /// Words before "rate" of which the rate is no velocity.
-const OF_RATES: [&str; 10] =
-    ["sample", "sampling", "frame", "data", "bit", "flow", "strain", "decay", "heart", "refresh"];
+const OF_RATES: &str = "sample sampling frame data bit flow strain decay heart refresh";
 
 impl Word {
     /// Meaning of a name without its brackets.
     pub(crate) fn in_name(bare: &str) -> Self {
         let words = words(bare);
-        let is_motion = |at: usize| words[at] != "rate" || at == 0 || !OF_RATES.contains(&&*words[at - 1]);
+        let is_motion = |at: usize| words[at] != "rate" || at == 0 || !is_in(OF_RATES, &words[at - 1]);
         let find = |table: &[(&str, Quantity)]| {
-            let mut found =
-                words.iter().enumerate().filter(|(at, _)| is_motion(*at)).filter_map(|(_, word)| {
-                    table.iter().find(|(known, _)| known == word).map(|(_, quantity)| *quantity)
-                });
+            let mut found = words.iter().enumerate().filter(|(at, _)| is_motion(*at)).filter_map(|(_, word)| {
+                table.iter().find(|(known, _)| is_in(known, word)).map(|(_, quantity)| *quantity)
+            });
             // Words that contradict each other tell nothing.
             let first = found.next()?;
             Some(found.all(|other| other == first).then_some(first))
@@ -85,9 +51,14 @@ impl Word {
         Self {
             quantity: named.or(sensor).flatten(),
             is_sensor: named.is_none() && sensor.is_some(),
-            is_angular: words.iter().any(|word| ANGULAR.contains(&&**word)),
+            is_angular: words.iter().any(|word| is_in(ANGULAR, word)),
         }
     }
+}
+
+/// True for one of the words of a list, which blanks separate.
+pub(crate) fn is_in(list: &str, word: &str) -> bool {
+    list.split(' ').any(|known| known == word)
 }
 
 /// The words of a name in small letters, without digits at their ends: `angularVelocity1` has two.

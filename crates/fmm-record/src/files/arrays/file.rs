@@ -237,7 +237,7 @@ fn is_uniform(array: &Array, series: Series) -> bool {
     array.series(series).is_some_and(|times| UniformTimes::of(&times).is_ok())
 }
 
-/// Whether a series is time by nature: uniform, and no count of samples.
+/// True for a series that is time by nature: uniform, and no count of samples.
 fn is_time(array: &Array, series: Series) -> bool {
     is_uniform(array, series) && !array.series(series).is_some_and(|times| are_whole(&times))
 }

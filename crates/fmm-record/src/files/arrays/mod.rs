@@ -50,7 +50,7 @@ impl Array {
         if let [value] = self.values[..] { Some(value) } else { None }
     }
 
-    /// Whether it is a series of at least two numbers.
+    /// True for a series of at least two numbers.
     pub(super) fn is_vector(&self) -> bool {
         self.values.len() >= 2 && self.shape.len() <= 2 && self.matrix().is_none()
     }
@@ -142,7 +142,7 @@ impl Slice {
         Self { array: array.name().into(), series }
     }
 
-    /// Whether it is a vector that is called time.
+    /// True for a vector that is called time.
     pub(crate) fn is_called_time(&self) -> bool {
         self.series == Series::Whole && Clock::of(leaf(&self.array)).is_time
     }

@@ -18,7 +18,7 @@ pub(super) enum Separator {
 }
 
 impl Separator {
-    /// Whether a comma within a field may be a decimal comma.
+    /// True if a comma within a field may be a decimal comma.
     pub(super) fn leaves_comma(self) -> bool {
         self != Self::Sign(b',')
     }
@@ -159,7 +159,7 @@ impl Digits {
         }
     }
 
-    /// Whether fewer are written than in the `least` of others.
+    /// True if fewer are written than in the `least` of others.
     pub(super) fn are_fewer_than(self, least: Self) -> bool {
         // Numbers that all have a fraction or an exponent end with it.
         let is_whole = least.fraction == 0 && least.exponent == 0;

@@ -147,7 +147,7 @@ fn names_in(comment: &[u8], columns: &[Kind], separator: Separator) -> Option<Ve
     fitting.find(|names| names.iter().any(|name| Clock::of(name).is_time))
 }
 
-/// Whether fields are units, or stand in the places of units.
+/// True for fields that are units, or stand in the places of units.
 fn are_units(fields: &[String]) -> bool {
     let is_unit = |field: &&String| {
         let plain = plain(field);
@@ -164,7 +164,7 @@ fn are_units(fields: &[String]) -> bool {
     filled.peek().is_some() && filled.clone().any(|field| is_unit(&field)) && filled.all(|field| may_be(&field))
 }
 
-/// Whether fields may be the names above a row of units: some are filled, none is a number.
+/// True for fields that may be the names above a row of units: some are filled, none is a number.
 fn are_names(fields: &[String], separator: Separator) -> bool {
     let filled: Vec<&String> = fields.iter().filter(|field| !field.is_empty()).collect();
     !filled.is_empty() && filled.iter().all(|name| number(name.as_bytes(), separator).is_none())

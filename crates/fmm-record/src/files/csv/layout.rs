@@ -76,7 +76,7 @@ fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
 }
 
 /// The first row of the table: of its width, with a number in the first column of numbers and in half of all others.
-/// What is wrong with the others of its fields is then an error that tells the line, and not a row that is lost.
+/// A fault in its other fields is then an error with the line, and not a lost row.
 fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
     let numbers: Vec<usize> = (0..columns.len()).filter(|column| columns[*column] == Kind::Number).collect();
     let is_row = |row: &Row| {
@@ -107,7 +107,7 @@ fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
     if found(&b',') && is_decimal_comma(lines)? { Ok(Separator::Blanks) } else { Ok(Separator::Sign(b',')) }
 }
 
-/// Whether the commas of a table that has no other separator are decimal commas of one column of numbers.
+/// True if the commas of a table without another separator are decimal commas of one column of numbers.
 fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
     let numbers: Vec<Comma> = lines.iter().rev().map_while(|line| Comma::of(line.text.trim_ascii())).collect();
     if numbers.len() < lines.len().min(2) {
@@ -155,7 +155,7 @@ impl Comma {
         })
     }
 
-    /// Whether it cannot be two whole numbers as programs write them.
+    /// True if it cannot be two whole numbers as programs write them.
     fn is_decimal(&self) -> bool {
         self.after.is_none() || self.is_padded || self.is_negative_zero
     }

@@ -14,7 +14,7 @@ pub(super) struct Line {
     /// Counted from 1, as in an editor.
     pub(super) number: u64,
     pub(super) text: Vec<u8>,
-    /// Whether a line end follows; it may be missing at the end of the file only.
+    /// True if a line end follows; it may be missing at the end of the file only.
     pub(super) is_ended: bool,
     /// The comment right before it.
     pub(super) comment: Option<Vec<u8>>,

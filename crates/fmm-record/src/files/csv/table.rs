@@ -73,7 +73,7 @@ impl<R: Read> Table<R> {
         self.columns.iter().position(|kind| *kind != Kind::Blank).unwrap_or(0)
     }
 
-    /// Whether nothing is in a column.
+    /// True for an empty column.
     pub(super) fn is_blank(&self, column: usize) -> bool {
         self.columns[column] == Kind::Blank
     }

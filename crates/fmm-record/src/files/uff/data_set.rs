@@ -53,7 +53,7 @@ impl Ordinate {
         }
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -168,7 +168,7 @@ impl DataSet {
         self.sampled_record(Span::default()).map(|(record, _)| record)
     }
 
-    /// Whether it is a record over time.
+    /// True for a record over time.
     fn is_over_time(&self) -> bool {
         match (self.header.function, self.header.abscissa.data_type) {
             (FunctionType::TIME_RESPONSE | FunctionType::GENERAL, DataType::TIME) => true,
@@ -209,7 +209,7 @@ impl DataSet {
     }
 }
 
-/// Whether six digits are enough to write a number.
+/// True if six digits are enough to write a number.
 fn has_six_digits(number: f64) -> bool {
     format!("{number:.5e}").parse() == Ok(number)
 }

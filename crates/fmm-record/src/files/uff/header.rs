@@ -46,7 +46,7 @@ pub struct Freedom {
     pub direction: i32,
 }
 
-/// As `3+Z` or `part:3-RX`; a scalar has no direction.
+/// Text such as `3+Z` or `part:3-RX`; a scalar has no direction.
 impl std::fmt::Display for Freedom {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         const DIRECTIONS: [&str; 6] = ["X", "Y", "Z", "RX", "RY", "RZ"];
@@ -114,43 +114,18 @@ impl FunctionType {
     /// Spectrum.
     pub const SPECTRUM: Self = Self(12);
 
-    /// Names in the order of their numbers.
-    const NAMES: [&str; 29] = [
-        "general function",
-        "time response",
-        "auto spectrum",
-        "cross spectrum",
-        "frequency response",
-        "transmissibility",
-        "coherence",
-        "auto correlation",
-        "cross correlation",
-        "power spectral density",
-        "energy spectral density",
-        "probability density",
-        "spectrum",
-        "cumulative frequency distribution",
-        "peaks and valleys",
-        "stress over cycles",
-        "strain over cycles",
-        "orbit",
-        "mode indicator function",
-        "force pattern",
-        "partial power",
-        "partial coherence",
-        "eigenvalue",
-        "eigenvector",
-        "shock response spectrum",
-        "finite impulse response filter",
-        "multiple coherence",
-        "order function",
-        "phase compensation",
-    ];
+    /// Names in the order of their numbers, from 0 on.
+    const NAMES: &str = "general function|time response|auto spectrum|cross spectrum|frequency response|transmissibility|\
+        coherence|auto correlation|cross correlation|power spectral density|energy spectral density|\
+        probability density|spectrum|cumulative frequency distribution|peaks and valleys|stress over cycles|\
+        strain over cycles|orbit|mode indicator function|force pattern|partial power|partial coherence|\
+        eigenvalue|eigenvector|shock response spectrum|finite impulse response filter|multiple coherence|\
+        order function|phase compensation";
 }
 
 impl std::fmt::Display for FunctionType {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match usize::try_from(self.0).ok().and_then(|code| Self::NAMES.get(code)) {
+        match usize::try_from(self.0).ok().and_then(|code| Self::NAMES.split('|').nth(code)) {
             Some(name) => f.write_str(name),
             None => write!(f, "function of type {}", self.0),
         }

@@ -14,7 +14,7 @@ pub(super) struct Line<'a> {
     pub(super) text: &'a [u8],
     /// Its number, counted from 1.
     pub(super) number: u64,
-    /// Whether it has an end; the last line of a file that is cut off has none.
+    /// True if it has an end; the last line of a file that is cut off has none.
     pub(super) ended: bool,
     next: usize,
 }
@@ -65,7 +65,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Whether a line begins or ends a data set: −1 in its first six columns.
+/// True for a line that begins or ends a data set: −1 in its first six columns.
 pub(super) fn is_delimiter(line: &[u8]) -> bool {
     let text = line.trim_ascii_end();
     text.len() <= 6 && text.trim_ascii_start() == b"-1"

@@ -6,7 +6,7 @@
 //!
 //! Programs that write this format differ, and many err. The points count more than the header:
 //! a data set is as long as its number of points and their type make it, whatever its count of bytes; points that a
-//! header promises but the file does not have are reported as a [`Warning`].
+//! header promises but the file does not have are reported as a warning.
 //!
 //! ```
 //! use fmm_record::uff::{DataSet, Form, UffFile, write_to};
@@ -48,20 +48,12 @@ pub use data_set::{Abscissa, DataSet, Ordinate, Precision};
 pub use header::{Axis, DataType, Freedom, FunctionType, Header};
 pub use writer::{Form, write, write_to};
 
-/// Reads all data sets 58 of a file: [`UffFile::read`].
-///
-/// # Errors
-/// As [`UffFile::read`].
-pub fn read(path: impl AsRef<Path>) -> Result<UffFile, RecordError> {
-    UffFile::read(path)
-}
-
 /// All data sets 58 of a Universal File, and what else there is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UffFile {
     sets: Vec<DataSet>,
     others: Vec<(u32, u64)>,
-    warnings: Vec<Warning>,
+    warnings: Vec<String>,
 }
 
 impl UffFile {
@@ -75,7 +67,7 @@ impl UffFile {
         Self::parse(&bytes)
     }
 
-    /// Reads the bytes of a file. A missing end of a data set, or of the file, is a [`Warning`].
+    /// Reads the bytes of a file. A missing end of a data set, or of the file, is a warning.
     ///
     /// # Errors
     /// [`RecordError::UnknownFormat`] for other files and those without any function; for a data set that contradicts
@@ -99,7 +91,7 @@ impl UffFile {
                     file.take(&identifier, &line, &mut lines)?;
                 }
                 None if !in_stray_text => {
-                    file.warnings.push(Warning::Stray { line: line.number });
+                    file.warnings.push(format!("line {} belongs to no data set", line.number));
                     in_stray_text = true;
                 }
                 None => {}
@@ -132,18 +124,13 @@ impl UffFile {
         &self.sets
     }
 
-    /// The data sets 58 without their file.
-    pub fn into_sets(self) -> Vec<DataSet> {
-        self.sets
-    }
-
     /// The other data sets, which were not read: their numbers, and the lines at which they begin.
     pub fn others(&self) -> &[(u32, u64)] {
         &self.others
     }
 
-    /// Faults of the file that did not prevent reading it.
-    pub fn warnings(&self) -> &[Warning] {
+    /// Faults of the file that did not prevent reading it, each with its line, counted from 1.
+    pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
@@ -162,7 +149,7 @@ impl UffFile {
             }
         };
         let Some((header, form)) = records::read(lines)? else {
-            self.warnings.push(Warning::HeaderCut { line: begin });
+            self.warnings.push(format!("the file ends within the header of the data set at line {begin}"));
             return Ok(());
         };
         let points = match encoding {
@@ -171,11 +158,13 @@ impl UffFile {
         };
         let present = points.len();
         if form.count != present as u64 || present == 0 {
-            self.warnings.push(Warning::FewerPoints { line: begin, promised: form.count, present });
+            let promised = form.count;
+            self.warnings
+                .push(format!("the data set at line {begin} promises {promised} points, but {present} are there"));
         }
         let count = points.not_finite();
         if count > 0 {
-            self.warnings.push(Warning::NotFinite { line: begin, count });
+            self.warnings.push(format!("the data set at line {begin} has {count} points that are not finite"));
         }
         if present > 0 {
             let (abscissae, ordinate) = points.into_parts();
@@ -203,85 +192,6 @@ impl Identifier {
             "58" => Some(Self::Function),
             "58b" | "58B" => Some(Self::BinaryFunction),
             word => word.trim_end_matches(|letter: char| letter.is_ascii_alphabetic()).parse().ok().map(Self::Other),
-        }
-    }
-}
-
-/// Something in a Universal File that is not as it should be and did not keep it from being read.
-///
-/// Lines count from 1 and are those of an editor; the line is that on which the data set begins, unless stated.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Warning {
-    /// The header promises more points than there are. Those that are there were read; a data set without any is
-    /// left out.
-    FewerPoints {
-        /// Line at which the data set begins.
-        line: u64,
-        /// Number of points that its header promises.
-        promised: u64,
-        /// Number of points that are present.
-        present: usize,
-    },
-    /// Points follow those that the header promises. They were not read.
-    MorePoints {
-        /// Line at which the data set begins.
-        line: u64,
-        /// Number of points that its header promises.
-        promised: u64,
-    },
-    /// The header of a binary data set states another number of bytes than its points have. The points were read.
-    ByteCount {
-        /// Line at which the data set begins.
-        line: u64,
-        /// The number stated.
-        stated: u64,
-        /// Value of the points themselves.
-        actual: u64,
-    },
-    /// Values that are infinite or not a number.
-    NotFinite {
-        /// Line at which the data set begins.
-        line: u64,
-        /// Number of such points.
-        count: usize,
-    },
-    /// The file ends within a header. The data set is left out.
-    HeaderCut {
-        /// Line at which the data set begins.
-        line: u64,
-    },
-    /// The file ends without the line that closes the data set. A number at the very end was not read, because it
-    /// may be cut off.
-    NotClosed {
-        /// Line at which the data set begins.
-        line: u64,
-    },
-    /// Text between data sets.
-    Stray {
-        /// The first line of it.
-        line: u64,
-    },
-}
-
-impl std::fmt::Display for Warning {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::FewerPoints { line, promised, present } => {
-                write!(f, "the data set at line {line} promises {promised} points, but {present} are there")
-            }
-            Self::MorePoints { line, promised } => {
-                write!(f, "the data set at line {line} promises {promised} points, but more are there")
-            }
-            Self::ByteCount { line, stated, actual } => {
-                write!(f, "the data set at line {line} states {stated} bytes, but its points have {actual}")
-            }
-            Self::NotFinite { line, count } => {
-                write!(f, "the data set at line {line} has {count} points that are not finite")
-            }
-            Self::HeaderCut { line } => write!(f, "the file ends within the header of the data set at line {line}"),
-            Self::NotClosed { line } => write!(f, "the file ends before the data set at line {line} does"),
-            Self::Stray { line } => write!(f, "line {line} belongs to no data set"),
         }
     }
 }

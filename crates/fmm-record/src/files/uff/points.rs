@@ -2,7 +2,7 @@
 
 use super::lines::{Line, Lines, delimiter_at, find_delimiter, is_delimiter};
 use super::records::{Form, Numbers, shown, wrong_header};
-use super::{ByteOrder, Ordinate, Precision, Warning};
+use super::{ByteOrder, Ordinate, Precision};
 use crate::error::RecordError;
 
 /// Collects the numbers of points: abscissa if it is uneven, then the ordinate or its two parts.
@@ -73,7 +73,7 @@ pub(super) fn text(
     lines: &mut Lines,
     form: &Form,
     begin: u64,
-    warnings: &mut Vec<Warning>,
+    warnings: &mut Vec<String>,
 ) -> Result<Points, RecordError> {
     let mut points = Points::new(form);
     let needed = form.count.saturating_mul(form.numbers() as u64);
@@ -104,10 +104,10 @@ pub(super) fn text(
         }
     }
     if more {
-        warnings.push(Warning::MorePoints { line: begin, promised: form.count });
+        warnings.push(more_points(begin, form.count));
     }
     if !closed {
-        warnings.push(Warning::NotClosed { line: begin });
+        warnings.push(not_closed(begin));
     }
     Ok(points)
 }
@@ -185,7 +185,7 @@ impl Layout {
         })
     }
 
-    /// Whether the abscissae in `bytes` increase.
+    /// True if the abscissae in `bytes` increase.
     fn increases(self, bytes: &[u8], order: ByteOrder) -> bool {
         let mut abscissae = bytes.chunks_exact(self.point()).map(|point| number(&point[..self.abscissa], order));
         abscissae.try_fold(f64::NEG_INFINITY, |last, next| (next > last).then_some(next)).is_some()
@@ -207,7 +207,7 @@ pub(super) fn binary(
     form: &Form,
     encoding: &Encoding,
     begin: u64,
-    warnings: &mut Vec<Warning>,
+    warnings: &mut Vec<String>,
 ) -> Result<Points, RecordError> {
     let bytes = lines.rest();
     let order = encoding.order;
@@ -231,9 +231,9 @@ pub(super) fn binary(
             RecordError::on_line(begin, what)
         })?;
         if delimiter.is_none() {
-            warnings.push(Warning::NotClosed { line: begin });
+            warnings.push(not_closed(begin));
         } else if kept(layout) < block.len() {
-            warnings.push(Warning::MorePoints { line: begin, promised: form.count });
+            warnings.push(more_points(begin, form.count));
         }
         (*layout, kept(layout), block.len())
     };
@@ -241,8 +241,20 @@ pub(super) fn binary(
     layout.numbers(&bytes[..end], order).for_each(|number| points.push(number));
     let actual = (points.len() * layout.point()) as u64;
     if points.len() as u64 == form.count && !matches!(encoding.stated, 0) && encoding.stated != actual {
-        warnings.push(Warning::ByteCount { line: begin, stated: encoding.stated, actual });
+        let stated = encoding.stated;
+        warnings.push(format!("the data set at line {begin} states {stated} bytes, but its points have {actual}"));
     }
     lines.skip(next);
     Ok(points)
+}
+
+/// Points follow those that the header promises. They were not read.
+fn more_points(line: u64, promised: u64) -> String {
+    format!("the data set at line {line} promises {promised} points, but more are there")
+}
+
+/// The file ends without the line that closes the data set. A number at the very end was not read, as it may be cut
+/// off.
+fn not_closed(line: u64) -> String {
+    format!("the file ends before the data set at line {line} does")
 }

@@ -208,7 +208,7 @@ impl<'a> Numbers<'a> {
         Self { line, at: 0 }
     }
 
-    /// Whether the number given last ends where the line does.
+    /// True if the last number ends with the line.
     pub(super) fn at_end(&self) -> bool {
         self.at == self.line.len()
     }
@@ -246,7 +246,7 @@ fn leading(word: &[u8]) -> Option<(f64, usize)> {
     let digits = |from: usize| word[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let sign = |at: usize| usize::from(matches!(word.get(at), Some(b'+' | b'-')));
     let mut end = sign(0);
-    // What is no number fills little of its field, so that a number that fills the whole of the next one touches it.
+    // NaN and inf are short; the next number may follow without a space.
     for (name, value) in [(b"NaN", f64::NAN), (b"inf", f64::INFINITY)] {
         let after = end + name.len();
         if word.get(end..after).is_some_and(|text| text.eq_ignore_ascii_case(name)) && sign(after) == 1 {

@@ -15,8 +15,8 @@ fn file(name: &str) -> Vec<u8> {
 /// The data sets of a file without warnings.
 fn sets(bytes: &[u8]) -> Vec<DataSet> {
     let file = UffFile::parse(bytes).unwrap();
-    assert_eq!(file.warnings(), []);
-    file.into_sets()
+    assert!(file.warnings().is_empty());
+    file.sets().to_vec()
 }
 
 /// A header of type `form` with `points` behind it, and the delimiters.
