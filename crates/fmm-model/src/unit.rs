@@ -50,9 +50,9 @@ impl Unit {
     /// Unit as a person or an instrument writes it, in the symbols of this crate; `None` if one of its symbols is not
     /// known, or if it has two different units of time.
     ///
-    /// Beside the notation of [`Unit::of`]: `m s-1`, `ms^-1`, `m/s2`, `m/s**2`, `m.s-2`, `metres per second`; names such
-    /// as `deg`, `rev`, `micron`, `lbf`, `ticks` with their plurals; `u` for µ; `g` for free fall. Capitals matter only
-    /// where the text would be another unit without them.
+    /// Beside the notation of [`Unit::of`]: `m s-1`, `ms^-1`, `m/s2`, `m/s**2`, `m.s-2`, `metres per second`; names
+    /// such as `deg`, `rev`, `micron`, `lbf`, `ticks` with their plurals; `u` for µ; `g` for free fall. Capitals matter
+    /// only where the text would be another unit without them.
     ///
     /// ```
     /// use fmm_model::Unit;

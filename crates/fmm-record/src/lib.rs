@@ -101,7 +101,7 @@ pub use files::{Channel, DataFile, Format, Reader, open, uff};
 pub use numerics::spectrum::{RealTransform, Spectrum, blackman_harris};
 pub use realfft::num_complex::Complex64;
 pub use record::Record;
-pub use sampling::{JITTER, RATE_ROUNDING, Sampling, UniformTimes};
+pub use sampling::{Sampling, UniformTimes};
 pub use units::label::Label;
 pub use units::request::{Meaning, Request};
 pub use units::{Quantity, WrittenUnit};

@@ -1,12 +1,12 @@
-//! The sampling of a record: the uniform grid behind its time stamps, and how the rate was found.
+//! Sampling of a record: the uniform grid behind its time stamps, and the source of its rate.
 
 use crate::error::RecordError;
 
-/// Largest distance of a time stamp from the uniform grid, as a fraction of the interval.
-pub const JITTER: f64 = 0.01;
+/// Largest distance of a time stamp from the uniform grid, over the interval (1).
+const JITTER: f64 = 0.01;
 
-/// Largest relative distance of a rate from a whole number of hertz that is rounded to it.
-pub const RATE_ROUNDING: f64 = 1e-5;
+/// Largest relative distance of a rate from a whole number of hertz to which it is rounded (1).
+const RATE_ROUNDING: f64 = 1e-5;
 
 /// The uniform grid behind a column of time stamps.
 ///
@@ -14,13 +14,12 @@ pub const RATE_ROUNDING: f64 = 1e-5;
 /// h = (t_last − t_first)/(n − 1),        |t_i − (t_first + i h)| ≤ 0.01 h + d
 /// ```
 ///
-/// The first term is [`JITTER`]. The second is what rounding explains: *d* is one unit of the last decimal that
+/// The first term is jitter. The second is rounding: *d* is one unit of the last decimal that
 /// the stamps carry (half a unit for the stamp itself, half for the ends that define the grid), 1 ms for stamps
 /// with three decimals. It counts only if rounding shows: if more than 1 % of the steps, and more than two, differ
 /// from the usual one. A few odd steps among equal ones are gaps. No step may exceed 1.5 h + d.
 ///
-/// The rate is taken as a whole number of hertz when it is one within [`RATE_ROUNDING`], because time columns
-/// often carry few digits.
+/// The rate is taken as a whole number of hertz if it is one within 10⁻⁵, because time columns often carry few digits.
 ///
 /// ```
 /// use fmm_record::UniformTimes;

@@ -31,7 +31,8 @@ const DEVIATIONS: f64 = 6.0;
 const NOISES: f64 = 8.0;
 /// Least loss over the height (1), by judgement.
 const SHARE: f64 = 0.08;
-/// Least share of the loss that the half cycle after it does not bring back (1), by judgement: a step of the offset does.
+/// Least share of the loss that the half cycle after it does not bring back (1), by judgement: a step of the offset
+/// does.
 const LASTING: f64 = 0.8;
 /// Largest share of the loss that comes back later (1), by judgement: a beat brings back all.
 const RETURNED: f64 = 0.5;

@@ -66,7 +66,8 @@ const EXPLAINED: f64 = 0.2;
 const FALSE_RATE: f64 = 1e-2;
 /// Relative rise of the half cycles that no decay has (1), by judgement.
 const RISE: f64 = 0.1;
-/// Highest frequency that is looked at (cycles per sample, or per half cycle): half a cycle cannot be told from its mirror.
+/// Highest frequency that is looked at (cycles per sample, or per half cycle): half a cycle cannot be told from its
+/// mirror.
 const HIGHEST: f64 = 0.45;
 
 /// True if the half cycles rise and fall like those of two modes: a modulation leaves less than a fifth of the
@@ -236,7 +237,8 @@ impl Modulation {
             .min_by(|a, b| a.residuals.0.total_cmp(&b.residuals.0))
     }
 
-    /// True if noise alone would seldom do this: F of two coefficients exceeds x with the probability (1 + 2x/ν)^(−ν/2).
+    /// True if noise alone would seldom do this: F of two coefficients exceeds x with the probability (1 +
+    /// 2x/ν)^(−ν/2).
     fn is_significant(&self, count: usize) -> bool {
         let (with, without) = self.residuals;
         let f = 0.5 * (without - with) / (with / self.freedom);

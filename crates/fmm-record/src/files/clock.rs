@@ -31,12 +31,13 @@ enum Written {
 const TIMES: &str = "time times zeit timestamp timestamps zeitstempel elapsed uptime temps tiempo";
 
 /// Words that may stand beside one for time.
-const FILLERS: &str =
-    "stamp stamps rel relative abs absolute total since start system device sensor axis vector values in";
+const FILLERS: &str = "\
+    stamp stamps rel relative abs absolute total since start system device sensor axis vector values in";
 
 /// Words for a number of samples.
-const COUNTERS: &str = "sample samples index idx ind frame frames row rows scan scans point points sequence seq number num no nr \
-    id counter record line unnamed messwert datensatz";
+const COUNTERS: &str = "\
+    sample samples index idx ind frame frames row rows scan scans point points sequence seq number num no \
+    nr id counter record line unnamed messwert datensatz";
 
 impl Clock {
     /// Clock of a column without a name.
@@ -58,9 +59,10 @@ impl Clock {
         let is_bare_unit = is_known && stem_words.is_empty();
         let is_time = only_time || is_letter || is_bare_unit || (begins && is_known && in_brackets);
         let is_nameless = matches!(stem.trim(), "" | "#");
-        let counts = !stem_words.is_empty() && stem_words.iter().all(|word| is_in(COUNTERS, word));
-        let unit_counts = matches!(&unit, Written::Other(unit) if !words(unit).is_empty() && words(unit).iter().all(|word| is_in(COUNTERS, word)));
-        let is_counter = !is_time && !is_known && (is_nameless || counts || unit_counts);
+
+        let all_count = |words: &[String]| !words.is_empty() && words.iter().all(|word| is_in(COUNTERS, word));
+        let unit_counts = matches!(&unit, Written::Other(unit) if all_count(&words(unit)));
+        let is_counter = !is_time && !is_known && (is_nameless || all_count(&stem_words) || unit_counts);
         Self { is_time, is_counter, unit }
     }
 
@@ -176,8 +178,8 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
 const RATES: &str = "fs rate actualrate samplerate samplingrate samplefrequency samplingfrequency fsample fsampling";
 
 /// Names of scalars that hold an interval (s), in lower case and without underscores.
-const INTERVALS: &str =
-    "dt ts deltat deltax xincrement tsample sampletime samplingtime sampleinterval samplinginterval";
+const INTERVALS: &str = "\
+    dt ts deltat deltax xincrement tsample sampletime samplingtime sampleinterval samplinginterval";
 
 /// Largest difference of two statements of the rate, relative.
 const AGREEMENT: f64 = 1e-3;

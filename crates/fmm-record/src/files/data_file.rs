@@ -158,7 +158,8 @@ impl DataFile {
     /// The array called `name` in a MATLAB, HDF5 or NumPy file, with or without its unit.
     ///
     /// # Errors
-    /// [`RecordError::Channel`] without such an array or with several, [`RecordError::Unsupported`] if it is not a real numeric array, [`RecordError::Damaged`] if it cannot be read.
+    /// [`RecordError::Channel`] without such an array or with several, [`RecordError::Unsupported`] if it is not a real
+    /// numeric array, [`RecordError::Damaged`] if it cannot be read.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub fn array(&self, name: &str) -> Result<&Array, RecordError> {
         if let Content::Arrays(file) = &self.content {

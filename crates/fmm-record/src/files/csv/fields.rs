@@ -1,7 +1,7 @@
 //! Fields of a line, and the numbers in them.
 //!
-//! Taken apart here and not by the crate `csv`: that one takes all that follows an open quote for one field, whatever its
-//! size (520 MB of memory for such a file), and knows no columns that are aligned by blanks.
+//! Taken apart here and not by the crate `csv`: that one takes all that follows an open quote for one field, whatever
+//! its size (520 MB of memory for such a file), and knows no columns that are aligned by blanks.
 
 use std::ops::Range;
 

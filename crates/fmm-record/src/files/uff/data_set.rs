@@ -159,7 +159,7 @@ impl DataSet {
     /// The record over time that this is, with the quantity and the unit of its ordinate.
     ///
     /// The format has six digits for the interval. If the file has no more, and a whole number of hertz agrees with
-    /// them within [`RATE_ROUNDING`](crate::RATE_ROUNDING), that is the sampling rate.
+    /// them within 10⁻⁵, that is the sampling rate.
     ///
     /// # Errors
     /// [`RecordError::Unsupported`] for a function that is not one of time or not real, [`RecordError::TimeAxis`] for a

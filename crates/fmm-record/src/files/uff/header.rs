@@ -115,7 +115,8 @@ impl FunctionType {
     pub const SPECTRUM: Self = Self(12);
 
     /// Names in the order of their numbers, from 0 on.
-    const NAMES: &str = "general function|time response|auto spectrum|cross spectrum|frequency response|transmissibility|\
+    const NAMES: &str = "\
+        general function|time response|auto spectrum|cross spectrum|frequency response|transmissibility|\
         coherence|auto correlation|cross correlation|power spectral density|energy spectral density|\
         probability density|spectrum|cumulative frequency distribution|peaks and valleys|stress over cycles|\
         strain over cycles|orbit|mode indicator function|force pattern|partial power|partial coherence|\

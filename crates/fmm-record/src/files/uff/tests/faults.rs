@@ -94,13 +94,13 @@ fn promises_that_are_not_kept() {
     let (found, values) = warnings(&ascii(&promise, POINTS));
     assert_eq!(
         (&found[..], &values[..]),
-        (&["the data set at line 2 promises 2508876 points, but 6 are there"][..], &VALUES[..])
+        (&["the data set at line 2 promises 2508876 points, but 6 are there".to_owned()][..], &VALUES[..])
     );
     let fewer = FORM.replace("         6", "         4");
     let (found, values) = warnings(&ascii(&fewer, POINTS));
     assert_eq!(
         (&found[..], &values[..]),
-        (&["the data set at line 2 promises 4 points, but more are there"][..], &VALUES[..4])
+        (&["the data set at line 2 promises 4 points, but more are there".to_owned()][..], &VALUES[..4])
     );
     let none = UffFile::parse(&ascii(FORM, "")).unwrap_err().to_string();
     assert_eq!(
@@ -111,13 +111,13 @@ fn promises_that_are_not_kept() {
     let form = |count: &str| FORM.replace("         2         6", &format!("         4{count:>10}"));
     let identifier = "    58b     1     2          11          48     0     0           0           0";
     for (count, points, expected) in [
-        ("9999999999", 6, Some("the data set at line 2 promises 9999999999 points, but 6 are there")),
-        ("7", 6, Some("the data set at line 2 promises 7 points, but 6 are there")),
-        ("5", 5, Some("the data set at line 2 promises 5 points, but more are there")),
+        ("9999999999", 6, "the data set at line 2 promises 9999999999 points, but 6 are there"),
+        ("7", 6, "the data set at line 2 promises 7 points, but 6 are there"),
+        ("5", 5, "the data set at line 2 promises 5 points, but more are there"),
     ] {
         let (found, values) = warnings(&block(identifier, &form(count), &bytes_of(&VALUES, false)));
         assert_eq!(values, VALUES[..points]);
-        assert!(found.contains(&expected.unwrap()), "{count}: {found:?}");
+        assert!(found.iter().any(|found| found == expected), "{count}: {found:?}");
     }
     // Stray line ends before the delimiter, and a count of bytes that is wrong.
     for stray in ["\n", "\r\n", "\n\n"] {
@@ -126,7 +126,10 @@ fn promises_that_are_not_kept() {
     }
     let wrong = identifier.replace("48", "24");
     let found = warnings(&block(&wrong, &form("6"), &bytes_of(&VALUES, false)));
-    assert_eq!(found, (vec!["the data set at line 2 states 24 bytes, but its points have 48"], VALUES.to_vec()));
+    assert_eq!(
+        found,
+        (vec!["the data set at line 2 states 24 bytes, but its points have 48".to_owned()], VALUES.to_vec())
+    );
     // A delimiter among the bytes: the last value holds it.
     let mut hidden = VALUES;
     hidden[5] = f64::from_le_bytes(*b"    -1\n ");
@@ -189,7 +192,7 @@ fn contradictions_name_their_line() {
     for text in [&b""[..], b"t,v\n0,1\n", b"    -1\n    -1\n", b"    -1\nabc\n", &[0; 500], &[b'\n'; 500]] {
         assert!(says(&UffFile::parse(text), "not a Universal File"), "{text:?}");
     }
-    assert!(says(&read("/no/such/file.uff"), "cannot read"));
+    assert!(says(&UffFile::read("/no/such/file.uff"), "cannot read"));
 }
 
 #[test]
