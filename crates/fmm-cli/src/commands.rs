@@ -8,8 +8,9 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
+use crate::files::create_folder;
 use crate::output::print;
-use crate::{backbone, batch, budget, design, force, formats, frf, identify, laws, simulate};
+use crate::{backbone, batch, budget, design, force, frf, identify, lists, simulate};
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
 #[derive(Debug, Parser)]
@@ -101,8 +102,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode
         Command::Design(arguments) => design::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
         Command::Merge(arguments) => batch::merge(arguments),
-        Command::Laws { json } => laws::run(*json),
-        Command::Formats { json } => formats::run(*json),
+        Command::Laws { json } => lists::laws(*json),
+        Command::Formats { json } => lists::formats(*json),
         Command::Completions { shell } => completions(*shell),
         Command::Manual { folder } => manual(folder),
     };
@@ -122,7 +123,7 @@ fn completions(shell: Shell) -> Result<(), Box<dyn Error>> {
 }
 
 fn manual(folder: &std::path::Path) -> Result<(), Box<dyn Error>> {
-    std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
+    create_folder(folder)?;
     clap_mangen::generate_to(Program::command(), folder)?;
     Ok(())
 }

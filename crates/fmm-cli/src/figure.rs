@@ -345,8 +345,13 @@ fn ticks(span: f64) -> TickFormat {
     }))
 }
 
+/// The smallest and the largest value; infinite and in the wrong order without any.
+pub(crate) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = ends(values);
     if low < high { (low, high) } else { (low - 1.0, low + 1.0) }
 }
 

@@ -7,19 +7,17 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use crate::figure;
+use crate::files;
 use crate::input::{Choice, Given, Question};
-use crate::output::{Output, drawn, print, require_writable};
-use crate::pictures::Pictures;
+use crate::output::{Output, drawn, print, print_json, spinner};
 use crate::posterior::Posterior;
-use crate::report::{self, Found};
+use crate::report::{self, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, ImpactTrial, Preparation};
 use fmm_record::{Column, Quantity, Record, Request};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 /// Identifies the friction of a machine from the record of its free vibration.
@@ -103,8 +101,7 @@ fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation)
 
 /// Fits all candidates while a line on standard error shows how far they are.
 fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -> Result<Comparison, Box<dyn Error>> {
-    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
-    bar.enable_steady_tick(Duration::from_millis(100));
+    let bar = spinner()?;
     let samples = decay.summary().samples as f64;
     let show = |law: &str, progress: &Progress<'_>| {
         let rms = (progress.sum_of_squares() / samples).sqrt();
@@ -162,7 +159,7 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
         return Err(refusal.into());
     }
     if let Some(path) = &arguments.report {
-        require_writable(path)?;
+        files::require_writable(path)?;
     }
     let mut found = found(arguments, candidates)?;
     let posterior = arguments.posterior.then(|| Posterior::of(found.comparison.preferred(), &found.decay)).transpose();
@@ -176,7 +173,7 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
     };
     if arguments.output.json {
         let document = Document { comparison: &found.comparison, posterior: &found.posterior };
-        print(serde_json::to_string_pretty(&document)?)?;
+        print_json(&document)?;
     } else {
         print(format_args!("{}\n{}", found.origin, found.comparison))?;
         if let Some(posterior) = &found.posterior {

@@ -1,11 +1,16 @@
-//! Destinations of results: standard output, and folders of figures.
+//! Standard output, folders of figures, and progress.
 
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::files::create_folder;
 
 /// How a result is given out.
 #[derive(Debug, Args)]
@@ -21,22 +26,8 @@ pub(crate) struct Output {
 impl Output {
     /// The folder for figures, which exists, if they are asked for.
     pub(crate) fn folder(&self) -> Result<Option<&Path>, Box<dyn Error>> {
-        let Some(folder) = &self.figures else { return Ok(None) };
-        std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
-        Ok(Some(folder))
-    }
-}
-
-/// Refuses a path at which no file can be, before work is done for it.
-pub(crate) fn require_writable(path: &Path) -> Result<(), String> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if path.is_dir() {
-        return Err(format!("cannot write {}: it is a folder; give the name of a file", path.display()));
-    }
-    if folder.is_dir() {
-        Ok(())
-    } else {
-        Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()))
+        self.figures.as_deref().map(create_folder).transpose()?;
+        Ok(self.figures.as_deref())
     }
 }
 
@@ -55,12 +46,14 @@ pub(crate) fn print(result: impl Display) -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// Writes a file so that at no time there is a part of it.
-pub(crate) fn write_at_once(path: &Path, text: &str) -> Result<(), String> {
-    // Another process may write the same, and then it is the same.
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".part-{}", std::process::id()));
-    let unwritable = |error| format!("cannot write {}: {error}", path.display());
-    std::fs::write(&part, text).map_err(unwritable)?;
-    std::fs::rename(&part, path).map_err(unwritable)
+/// Prints a document of JSON.
+pub(crate) fn print_json(document: &impl Serialize) -> Result<(), Box<dyn Error>> {
+    print(serde_json::to_string_pretty(document)?)
+}
+
+/// A line on standard error that turns while work of unknown length is done.
+pub(crate) fn spinner() -> Result<ProgressBar, Box<dyn Error>> {
+    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    Ok(bar)
 }

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use clap::CommandFactory;
+use clap::{CommandFactory, Parser};
+use fmm_identify::Experiment;
 use serde::{Deserialize, Serialize};
 
 use super::manifest::{FILE, Manifest};
-use super::record_options::RecordOptions;
 use super::sheet::Sheet;
-use crate::output::write_at_once;
+use crate::files::{self, create_folder, named};
+use crate::input::{Given, Input, Question};
 
 /// The records of a campaign, in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -76,9 +77,7 @@ impl Campaign {
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
         for column in manifest.columns.iter().filter(|column| *column != FILE && !is_option(column)) {
-            refuse_drive(column)
-                .and_then(|()| refuse_misspelt(column, &command))
-                .map_err(|error| format!("{}: {error}", path.display()))?;
+            refuse_drive(column).and_then(|()| refuse_misspelt(column, &command)).map_err(named(path))?;
         }
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let entry = |cells: &Vec<String>| {
@@ -98,7 +97,7 @@ impl Campaign {
         let entries = manifest.records.iter().map(entry).collect();
         let campaign = Self { options, group: group.or(manifest.group), sheet: manifest.sheet, entries };
         if let Some(column) = &campaign.group {
-            campaign.require_column(column).map_err(|error| format!("{}: {error}", path.display()))?;
+            campaign.require_column(column).map_err(named(path))?;
         }
         Ok(campaign)
     }
@@ -129,15 +128,14 @@ impl Campaign {
     /// # Errors
     /// If another campaign is there.
     pub(crate) fn keep(&self, folder: &Path) -> Result<(), Box<dyn Error>> {
-        let rows = folder.join("rows");
-        std::fs::create_dir_all(&rows).map_err(|error| format!("cannot create {}: {error}", rows.display()))?;
+        create_folder(&folder.join("rows"))?;
         let path = folder.join(LIST);
         let kept = if path.exists() { Some(Self::read(folder)?) } else { None };
         if kept.as_ref() == Some(self) {
             return Ok(());
         }
         if kept.is_none_or(|kept| Self { sheet: self.sheet.clone(), ..kept } == *self) {
-            return Ok(write_at_once(&path, &serde_json::to_string_pretty(self)?)?);
+            return Ok(files::write(&path, &serde_json::to_string_pretty(self)?)?);
         }
         Err(format!(
             "{} holds a campaign of other records or options; give another folder, or remove it",
@@ -149,10 +147,36 @@ impl Campaign {
     /// The campaign whose list is in `folder`.
     pub(crate) fn read(folder: &Path) -> Result<Self, Box<dyn Error>> {
         let path = folder.join(LIST);
-        let text = std::fs::read_to_string(&path).map_err(|error| {
-            format!("{} holds no campaign: cannot read {}: {error}", folder.display(), path.display())
-        })?;
-        Ok(serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?)
+        let text = files::text(&path).map_err(|error| format!("{} holds no campaign: {error}", folder.display()))?;
+        Ok(serde_json::from_str(&text).map_err(named(&path))?)
+    }
+}
+
+/// The options of one record.
+#[derive(Debug, Parser)]
+#[command(no_binary_name = true, args_override_self = true, allow_negative_numbers = true, disable_help_flag = true)]
+pub(crate) struct RecordOptions {
+    #[command(flatten)]
+    pub(super) given: Given,
+    #[command(flatten)]
+    pub(super) question: Question,
+}
+
+impl RecordOptions {
+    /// What these `options` tell of the record in a `file`.
+    pub(super) fn of(options: impl Iterator<Item = String>, file: &Path) -> Result<Self, Box<dyn Error>> {
+        let arguments = options.chain(["--".to_owned(), file.display().to_string()]);
+        Ok(Self::try_parse_from(arguments).map_err(|error| {
+            error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
+        })?)
+    }
+
+    /// The record as it was read, and as it is fitted.
+    pub(crate) fn prepared(&self) -> Result<(Input, Experiment), Box<dyn Error>> {
+        let input = self.given.read_mode()?;
+        let preparation = self.given.preparation().gain_uncertainty(self.question.scale_u);
+        let experiment = self.question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
+        Ok((input, experiment))
     }
 }
 

@@ -5,7 +5,8 @@ use fmm_identify::FrictionOverLoad;
 use fmm_model::{Estimated, Rounded};
 use serde::Serialize;
 
-use super::row::{Row, Told, quantities};
+use super::row::{Row, Told, in_unit, quantities};
+use crate::figure::ends;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -15,6 +16,9 @@ const WIDE: f64 = 1.1;
 const SHOWN: f64 = 0.05;
 /// Pieces in which the band about a line is drawn.
 const PIECES: u32 = 40;
+
+/// Ends of an interval.
+type Ends = (f64, f64);
 
 /// The column of the normal load.
 pub(super) const LOAD: &str = "normal_load";
@@ -73,8 +77,10 @@ pub(super) fn dependences(rows: &[Row], columns: &[String]) -> Vec<Dependence> {
     let columns = columns.iter().map(|column| {
         let place = |row: &Row| number_in(row, column);
         let unit = if column.replace('-', "_") == LOAD { "N" } else { "" };
-        Dependence::by_line(rows, column, unit, place)
-            .unwrap_or_else(|| Dependence::none(column, "no record tells friction with an uncertainty"))
+        Dependence::by_line(rows, column, unit, place).unwrap_or_else(|| {
+            let why = format!("{}: no record tells friction with an uncertainty", words(column));
+            Dependence::new(("", ""), (column, ""), why, None, Vec::new())
+        })
     });
     load.into_iter().chain(amplitude).chain(columns).collect()
 }
@@ -104,12 +110,9 @@ fn over_load(rows: &[Row]) -> Option<Dependence> {
     let found = FrictionOverLoad::of(&runs);
     let line = found.as_ref().ok().map(|found| {
         let (intercept, slope) = (found.intercept(), found.coefficient());
-        let (_, largest) = found.loads();
-        let at = |piece: u32| {
-            let load = largest * f64::from(piece) / f64::from(PIECES);
-            let ends = if piece == 0 { found.intercept_interval(LEVEL) } else { found.force_interval(load, LEVEL) };
-            let (low, high) = ends.unwrap_or((found.force(load), found.force(load)));
-            (load, found.force(load), low, high)
+        let at = |load: f64| {
+            let ends = if load == 0.0 { found.intercept_interval(LEVEL) } else { found.force_interval(load, LEVEL) };
+            (found.force(load), ends)
         };
         Line {
             intercept: intercept.value,
@@ -120,30 +123,38 @@ fn over_load(rows: &[Row]) -> Option<Dependence> {
             slope_interval_95: found.coefficient_interval(LEVEL),
             between: found.between(),
             p: found.intercept_p_value(),
-            band: (0..=PIECES).map(at).collect(),
+            band: band((0.0, found.loads().1), at),
         }
     });
-    Some(Dependence {
-        quantity: quantity.0.to_owned(),
-        unit: quantity.1.to_owned(),
-        against: LOAD.to_owned(),
-        against_unit: "N".to_owned(),
-        records: runs.len(),
-        statement: found.map_or_else(
-            |error| format!("{} against normal load: {error}", quantity.0.replace('_', " ")),
-            |found| found.to_string(),
-        ),
-        line,
-        points: runs.iter().map(|(load, force)| (load.value, force.value, force.uncertainty)).collect(),
-    })
+    let statement = match &found {
+        Ok(found) => found.to_string(),
+        Err(error) => format!("{} against normal load: {error}", words(quantity.0)),
+    };
+    let points = runs.iter().map(|(load, force)| (load.value, force.value, force.uncertainty)).collect();
+    Some(Dependence::new(quantity, (LOAD, "N"), statement, line, points))
+}
+
+/// A name as words.
+fn words(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// Places between two ends, with the value and the interval there.
+fn band((low, high): (f64, f64), at: impl Fn(f64) -> (f64, Option<Ends>)) -> Vec<(f64, f64, f64, f64)> {
+    let place = |piece: u32| {
+        let x = low + (high - low) * f64::from(piece) / f64::from(PIECES);
+        let (value, interval) = at(x);
+        let (below, above) = interval.unwrap_or((value, value));
+        (x, value, below, above)
+    };
+    (0..=PIECES).map(place).collect()
 }
 
 /// Friction against the amplitude of the release, where amplitudes of one unit differ by enough.
 fn over_amplitude(rows: &[Row]) -> Option<Dependence> {
     let found = || rows.iter().filter_map(Row::found);
     let unit = &found().next()?.unit;
-    let (low, high) = found()
-        .fold((f64::INFINITY, 0.0_f64), |(low, high), found| (low.min(found.amplitude), high.max(found.amplitude)));
+    let (low, high) = ends(found().map(|found| found.amplitude));
     if high < WIDE * low || found().any(|found| found.unit != *unit) {
         return None;
     }
@@ -152,17 +163,15 @@ fn over_amplitude(rows: &[Row]) -> Option<Dependence> {
 }
 
 impl Dependence {
-    fn none(against: &str, why: &str) -> Self {
-        Self {
-            quantity: String::new(),
-            unit: String::new(),
-            against: against.to_owned(),
-            against_unit: String::new(),
-            records: 0,
-            statement: format!("{}: {why}", against.replace('_', " ")),
-            line: None,
-            points: Vec::new(),
-        }
+    fn new(
+        (quantity, unit): (&str, &str),
+        (against, against_unit): (&str, &str),
+        statement: String,
+        line: Option<Line>,
+        points: Vec<(f64, f64, f64)>,
+    ) -> Self {
+        let [quantity, unit, against, against_unit] = [quantity, unit, against, against_unit].map(str::to_owned);
+        Self { quantity, unit, against, against_unit, records: points.len(), statement, line, points }
     }
 
     /// The measure of friction that tells most against what is at a `place` in each record.
@@ -174,69 +183,41 @@ impl Dependence {
         };
         let points: Vec<(f64, f64, f64)> = rows.iter().filter_map(point).collect();
         let found = if points.iter().all(|point| point.0 == points[0].0) {
-            Err(format!("fewer than two different values of it stand beside a {}", name.replace('_', " ")))
+            Err(format!("fewer than two different values of it stand beside a {}", words(name)))
         } else {
             let points: Vec<UncertainPoint> =
                 points.iter().map(|(x, y, u)| UncertainPoint::new(*x, *y, 0.0, *u)).collect();
             RandomEffectsLine::fit(&points).map_err(|error| error.to_string())
         };
-        let (low, high) = points
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| (low.min(point.0), high.max(point.0)));
-        let line = found.as_ref().ok().map(|found| Line::of(found, low, high));
-        let words = |text: &str| text.replace('_', " ");
-        let statement = match &line {
-            Some(line) => {
-                let per = if against_unit.is_empty() {
-                    format!("unit of {}", words(against))
-                } else {
-                    against_unit.to_owned()
-                };
-                let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-                let slope = Rounded::new(line.slope, Some(line.slope_u));
-                let verb = if line.p < SHOWN { "depends on" } else { "does not show to depend on" };
+        let (low, high) = ends(points.iter().map(|point| point.0));
+        let (friction, place) = (words(name), words(against));
+        let (line, statement) = match found {
+            Ok(found) => {
+                let line = Line::of(&found, low, high);
                 let axis = if against_unit.is_empty() { String::new() } else { format!(" {against_unit}") };
-                format!(
-                    "{} {verb} {} between {} and {}{axis}: it changes by {slope}{unit} per {per} (p = {:.1e}), from {} records that \
-                     scatter about the line by {:.2e}{unit} beyond their uncertainties",
-                    words(name),
-                    words(against),
-                    Rounded::new(low, None),
-                    Rounded::new(high, None),
+                let per = if axis.is_empty() { format!(" unit of {place}") } else { axis.clone() };
+                let verb = if line.p < SHOWN { "depends on" } else { "does not show to depend on" };
+                let [slope, low, high] = [(line.slope, Some(line.slope_u)), (low, None), (high, None)]
+                    .map(|(value, u)| Rounded::new(value, u).to_string());
+                let statement = format!(
+                    "{friction} {verb} {place} between {low} and {high}{axis}: it changes by {} per{per} (p = {:.1e}), from {} records \
+                     that scatter about the line by {} beyond their uncertainties",
+                    in_unit(slope, unit),
                     line.p,
                     points.len(),
-                    line.between,
-                )
+                    in_unit(format_args!("{:.2e}", line.between), unit),
+                );
+                (Some(line), statement)
             }
-            None => format!(
-                "{} against {}: {}",
-                words(name),
-                words(against),
-                found.as_ref().err().map_or("", String::as_str)
-            ),
+            Err(why) => (None, format!("{friction} against {place}: {why}")),
         };
-        Some(Self {
-            quantity: name.to_owned(),
-            unit: unit.to_owned(),
-            against: against.to_owned(),
-            against_unit: against_unit.to_owned(),
-            records: points.len(),
-            statement,
-            line,
-            points,
-        })
+        Some(Self::new((name, unit), (against, against_unit), statement, line, points))
     }
 }
 
 impl Line {
     /// Drawn between these places.
     fn of(found: &RandomEffectsLine, low: f64, high: f64) -> Self {
-        let at = |piece: u32| {
-            let x = low + (high - low) * f64::from(piece) / f64::from(PIECES);
-            let value = found.value(x);
-            let (below, above) = found.value_interval(x, LEVEL).unwrap_or((value, value));
-            (x, value, below, above)
-        };
         Self {
             intercept: found.intercept(),
             intercept_u: found.intercept_uncertainty(),
@@ -246,7 +227,7 @@ impl Line {
             slope_interval_95: found.slope_interval(LEVEL),
             between: found.between(),
             p: found.slope_p_value(),
-            band: (0..=PIECES).map(at).collect(),
+            band: band((low, high), |x| (found.value(x), found.value_interval(x, LEVEL))),
         }
     }
 }

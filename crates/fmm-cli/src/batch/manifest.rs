@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::cells::{at, cells};
 use super::sheet::Sheet;
+use crate::files::{self, named};
 
 /// What a manifest says, whichever way it is written.
 #[derive(Debug)]
@@ -25,10 +26,9 @@ pub(super) const FILE: &str = "file";
 impl Manifest {
     /// Reads TOML if the name or the beginning of the file looks so, and CSV otherwise.
     pub(super) fn read(path: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let text = files::text(path)?;
         let read = if is_toml(path, &text) { Self::of_toml(&text) } else { Self::of_csv(&text) };
-        let manifest =
-            read.and_then(Self::with_columns_once).map_err(|error| format!("{}: {error}", path.display()))?;
+        let manifest = read.and_then(Self::with_columns_once).map_err(named(path))?;
         if manifest.records.is_empty() {
             return Err(format!("{}: the manifest has no records", path.display()));
         }
@@ -129,6 +129,31 @@ fn is_toml(path: &Path, text: &str) -> bool {
             })
         }
     }
+}
+
+/// The entries of a table as text, numbers as they are written.
+pub(super) fn cells(text: &str, table: &DeTable<'_>) -> Result<Vec<(String, String)>, String> {
+    let cell = |(key, value): (&Spanned<std::borrow::Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+        let cell = match value.get_ref() {
+            DeValue::String(words) => words.trim().to_owned(),
+            DeValue::Integer(number) => number.to_string(),
+            DeValue::Float(number) => number.as_str().to_owned(),
+            DeValue::Boolean(yes) => yes.to_string(),
+            DeValue::Datetime(time) => time.to_string(),
+            DeValue::Array(_) | DeValue::Table(_) => {
+                let what = format!("`{}` must be a text or a number, as in {0} = \"…\"", key.get_ref());
+                return Err(at(text, value, &what));
+            }
+        };
+        Ok((key.get_ref().to_string(), cell))
+    };
+    table.iter().map(cell).collect()
+}
+
+/// What is wrong with a part of the text, with its line.
+pub(super) fn at<T>(text: &str, part: &Spanned<T>, what: &str) -> String {
+    let before = text.get(..part.span().start).unwrap_or(text);
+    format!("line {}: {what}", before.matches('\n').count() + 1)
 }
 
 #[cfg(test)]

@@ -5,23 +5,19 @@
 //! resumed at any time. Copies of a record are found when all rows are there.
 
 mod campaign;
-mod cells;
 mod dependence;
 mod joint;
 mod manifest;
 mod page;
-mod record_options;
 mod row;
 mod shared;
 mod sheet;
-mod sheet_fields;
 mod summary;
 mod table;
 
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use clap::Args;
 use fmm_fit::Progress;
@@ -29,7 +25,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-use crate::output::{print, write_at_once};
+use crate::files;
+use crate::output::{print, spinner};
 use campaign::Campaign;
 use joint::Joint;
 use row::Row;
@@ -112,8 +109,7 @@ impl Asked {
 
 /// Fits all records together while a line on standard error shows how far that is.
 fn joint(campaign: &Campaign, rows: &[Row]) -> Result<Joint, Box<dyn Error>> {
-    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
-    bar.enable_steady_tick(Duration::from_millis(100));
+    let bar = spinner()?;
     let show = |law: &str, progress: &Progress<'_>| {
         bar.set_message(format!("joint fit by {law}: step {}", progress.iterations()));
         ControlFlow::Continue(())
@@ -190,7 +186,7 @@ fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -
         ("campaign.json", table::document(&rows, &summary)?),
         ("campaign.html", page::page(campaign, &rows, &summary)),
     ] {
-        write_at_once(&folder.join(name), &text)?;
+        files::write(&folder.join(name), &text)?;
     }
     eprintln!("written: {}", folder.join("campaign.{csv,json,html}").display());
     give_out(&rows, &summary, json)

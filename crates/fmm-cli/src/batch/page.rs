@@ -7,11 +7,13 @@ use fmm_model::Rounded;
 use super::campaign::Campaign;
 use super::dependence::{Dependence, Line};
 use super::row::{Outcome, Row, quantities};
-use super::sheet_fields::Field;
+use super::sheet::Field;
 use super::summary::{Quantity, Summary};
 use super::table::{doubt_lines, group_lines, joint_lines, quantity_text, statement};
 use crate::figure::{Layer, Panel, Role, drawn, label};
-use crate::page::{cell, escaped, figure, page as whole_page, table, text_cell};
+use crate::page::{
+    cell, escaped, figure, optional_cell, page as whole_page, paragraphs, row_heading, section, table, text_cell,
+};
 
 /// The page of a campaign.
 pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> String {
@@ -41,14 +43,12 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
 
 /// What the records say together, in sentences.
 fn statements(summary: &Summary) -> String {
-    let doubts = doubt_lines(summary).map(|line| format!("<p>{}</p>\n", escaped(&line)));
-    let mut statements: String = doubts.collect::<Vec<_>>().concat();
+    let mut statements = paragraphs(doubt_lines(summary));
     for quantity in &summary.quantities {
         // Writing to a string does not fail.
         let _ = writeln!(statements, "<p class=\"statement\">{}</p>", escaped(&statement(quantity)));
-        for line in quantity.precision.iter().flat_map(|group| group_lines(quantity, group)) {
-            let _ = writeln!(statements, "<p>{}</p>", escaped(&line));
-        }
+        let groups = quantity.precision.iter();
+        statements.push_str(&paragraphs(groups.flat_map(|group| group_lines(quantity, group))));
     }
     statements
 }
@@ -59,7 +59,7 @@ fn together(summary: &Summary) -> String {
         let Quantity { mean, u, interval_95: [low, high], weighted_mean: [weighted, claimed], joint, .. } = *quantity;
         let influential = quantity.most_influential.as_ref();
         vec![
-            format!("<th scope=\"row\">{}</th>", escaped(&quantity.name.replace('_', " "))),
+            row_heading(&quantity.name.replace('_', " ")),
             text_cell(&quantity_text(quantity, mean, u)),
             text_cell(&Rounded::new(mean, Some(u)).interval(low, high)),
             text_cell(&format!("{:.1e}", quantity.shared_u)),
@@ -68,7 +68,7 @@ fn together(summary: &Summary) -> String {
             text_cell(&format!("{:.2e}", quantity.p)),
             text_cell(&format!("{:.0} %", 100.0 * quantity.i_squared)),
             text_cell(&quantity_text(quantity, weighted, claimed)),
-            text_cell(&joint.map_or_else(|| "–".to_owned(), |(value, u)| Rounded::new(value, u).to_string())),
+            optional_cell(joint.map(|(value, u)| Rounded::new(value, u).to_string())),
             text_cell(&influential.map_or_else(String::new, |(file, moved)| format!("{file}: {moved:+.2} u"))),
             text_cell(&format!("{} (+{})", quantity.records, quantity.left_out)),
         ]
@@ -94,7 +94,7 @@ fn together(summary: &Summary) -> String {
 fn records(campaign: &Campaign, rows: &[Row]) -> String {
     let (names, columns) = (quantities(rows), campaign.columns());
     let row = |row: &Row| {
-        let mut cells = vec![format!("<th scope=\"row\">{}</th>", escaped(&row.file.display().to_string()))];
+        let mut cells = vec![row_heading(&row.file.display().to_string())];
         cells.extend(columns.iter().map(|column| text_cell(row.description.get(*column).map_or("", String::as_str))));
         match &row.outcome {
             Outcome::Found(found) => {
@@ -123,8 +123,7 @@ fn joint(summary: &Summary) -> String {
     if summary.joint.is_none() {
         return String::new();
     }
-    let lines = joint_lines(summary).into_iter().map(|line| format!("<p>{}</p>\n", escaped(&line)));
-    format!("<section><h2>Joint fit</h2>\n{}</section>\n", lines.collect::<Vec<_>>().concat())
+    section("Joint fit", &paragraphs(joint_lines(summary)))
 }
 
 /// Friction against what differs between the records.
@@ -162,7 +161,7 @@ fn sheet(summary: &Summary) -> String {
             Some(value) => text_cell(value),
             None => cell("<span class=\"note\">not given</span>"),
         };
-        vec![text_cell(field.part), format!("<th scope=\"row\">{}</th>", escaped(&field.name)), value]
+        vec![text_cell(field.part), row_heading(&field.name), value]
     };
     format!(
         "<section><h2>Record sheet</h2>\n<p>What a friction coefficient is handed on with, by the fields of ASTM G115 as far as they are \

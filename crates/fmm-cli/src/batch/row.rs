@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::fmt::Display;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -11,9 +12,8 @@ use fmm_record::Record;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::campaign::Campaign;
-use super::record_options::RecordOptions;
-use crate::output::write_at_once;
+use super::campaign::{Campaign, RecordOptions};
+use crate::files;
 
 /// What became of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -131,13 +131,18 @@ impl Row {
 
     pub(crate) fn write(&self, folder: &Path, index: usize) -> Result<(), String> {
         let text = serde_json::to_string(self).map_err(|error| error.to_string())?;
-        write_at_once(&Self::path(folder, index), &text)
+        files::write(&Self::path(folder, index), &text)
     }
 
     /// What was found of a quantity of this name and unit.
     pub(crate) fn told(&self, (name, unit): (&str, &str)) -> Option<&Told> {
         self.found()?.findings.iter().find(|told| told.name == name && told.unit == unit)
     }
+}
+
+/// A value with its unit, unless that is 1.
+pub(super) fn in_unit(value: impl Display, unit: &str) -> String {
+    if unit == "1" { value.to_string() } else { format!("{value} {unit}") }
 }
 
 /// Names and units of all quantities of `rows`, in the order in which they first appear.

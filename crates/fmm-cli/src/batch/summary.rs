@@ -9,7 +9,7 @@ use super::dependence::{Dependence, FRICTION, dependences};
 use super::joint::{Joint, Together};
 use super::row::{Row, Told, quantities};
 use super::shared::{Parted, SharedPart};
-use super::sheet_fields::Field;
+use super::sheet::Field;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;

@@ -7,8 +7,8 @@ use fmm_model::Rounded;
 
 use super::campaign::Campaign;
 use super::joint::Joint;
-use super::row::{Found, Outcome, Row, Told, quantities};
-use super::sheet_fields::Field;
+use super::row::{Found, Outcome, Row, Told, in_unit, quantities};
+use super::sheet::Field;
 use super::summary::{ByGroup, Quantity, Summary};
 
 /// One line for each record, with all digits.
@@ -58,8 +58,7 @@ pub(crate) fn document(rows: &[Row], summary: &Summary) -> Result<String, Box<dy
 }
 
 pub(super) fn quantity_text(quantity: &Quantity, value: f64, u: f64) -> String {
-    let text = Rounded::new(value, Some(u)).to_string();
-    if quantity.unit == "1" { text } else { format!("{text} {}", quantity.unit) }
+    in_unit(Rounded::new(value, Some(u)), &quantity.unit)
 }
 
 /// The statement on a quantity in a sentence.
@@ -88,17 +87,13 @@ fn shared(quantity: &Quantity) -> String {
     }
     let mut sources: Vec<&str> = quantity.shared.iter().map(|part| part.input.source.as_str()).collect();
     sources.dedup();
-    let unit = if quantity.unit == "1" { String::new() } else { format!(" {}", quantity.unit) };
-    format!(" (of u shared by records: {:.1e}{unit} by {})", quantity.shared_u, sources.join(", "))
+    let u = in_unit(format_args!("{:.1e}", quantity.shared_u), &quantity.unit);
+    format!(" (of u shared by records: {u} by {})", sources.join(", "))
 }
 
 /// Name, value, uncertainty and unit.
 fn named_value(told: &Told) -> String {
-    let value = Rounded::new(told.value, told.u);
-    match told.unit.as_str() {
-        "1" => format!("{} = {value}", told.name),
-        unit => format!("{} = {value} {unit}", told.name),
-    }
+    format!("{} = {}", told.name, in_unit(Rounded::new(told.value, told.u), &told.unit))
 }
 
 /// What a joint fit said, in sentences.
@@ -157,12 +152,11 @@ pub(super) fn sheet_line(fields: &[Field]) -> String {
 
 pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
     let ByGroup { groups, repeatability, between, reproducibility, p, farthest, widest, .. } = group;
-    let unit = if quantity.unit == "1" { String::new() } else { format!(" {}", quantity.unit) };
-    let mut lines = vec![format!(
-        "by {} groups: s_r = {repeatability:.3e}{unit}, between {between:.3e}{unit}, s_R = {reproducibility:.3e}{unit}; groups alike: p = \
-         {p:.2e}",
-        groups.len()
-    )];
+    let [within, between, all] =
+        [repeatability, between, reproducibility].map(|s| in_unit(format_args!("{s:.3e}"), &quantity.unit));
+    let count = groups.len();
+    let mut lines =
+        vec![format!("by {count} groups: s_r = {within}, between {between}, s_R = {all}; groups alike: p = {p:.2e}")];
     for (outlier, what) in [(farthest, "lies far off"), (widest, "scatters more than the others")] {
         if let Some((name, p)) = outlier.as_ref().filter(|(_, p)| *p < 0.05) {
             lines.push(format!("group {name} {what} (p = {p:.1e})"));

@@ -7,6 +7,8 @@ use fmm_uq::{Distribution, Formula, Input, Inputs, Observations, Scalar, Uncerta
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::files;
+
 /// Inputs and what follows from them.
 #[derive(Debug)]
 pub(super) struct Measurement {
@@ -82,10 +84,7 @@ fn two<'de, T: Deserialize<'de>, D: Deserializer<'de>>(needed: &str, deserialize
 impl Measurement {
     /// Reads the file, which is JSON if its name ends so, and TOML otherwise.
     pub(super) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
-        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let read = if is_json { Self::of_json(&text) } else { Self::of_toml(&text) };
-        read.map_err(|error| format!("{}: {error}", path.display()).into())
+        Ok(Self::of(files::document(path)?).map_err(files::named(path))?)
     }
 
     /// The results for these values of the inputs.
@@ -93,10 +92,12 @@ impl Measurement {
         self.results.iter().map(|result| result.formula.evaluate(inputs)).collect()
     }
 
+    #[cfg(test)]
     pub(super) fn of_toml(text: &str) -> Result<Self, Box<dyn Error>> {
         Self::of(toml::from_str(text)?)
     }
 
+    #[cfg(test)]
     pub(super) fn of_json(text: &str) -> Result<Self, Box<dyn Error>> {
         Self::of(serde_json::from_str(text)?)
     }
@@ -104,13 +105,10 @@ impl Measurement {
     fn of(file: File) -> Result<Self, Box<dyn Error>> {
         let inputs = file.input.into_iter().map(InputEntry::input).collect::<Result<Vec<_>, _>>()?;
         let inputs = Inputs::new(inputs)?;
-        let correlations: Vec<(&str, &str, f64)> = file
-            .correlation
-            .iter()
-            .map(|Correlation { between: [first, second], coefficient }| {
-                (first.as_str(), second.as_str(), *coefficient)
-            })
-            .collect();
+        let correlations = file.correlation.iter().map(|Correlation { between: [first, second], coefficient }| {
+            (first.as_str(), second.as_str(), *coefficient)
+        });
+        let correlations: Vec<(&str, &str, f64)> = correlations.collect();
         let inputs = if correlations.is_empty() { inputs } else { inputs.with_correlations(&correlations)? };
         let names: Vec<&str> = inputs.as_slice().iter().map(Input::name).collect();
         let mut results: Vec<Wanted> = Vec::new();

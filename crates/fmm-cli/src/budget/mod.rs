@@ -17,7 +17,7 @@ use fmm_uq::{
 };
 use serde::Serialize;
 
-use crate::output::print;
+use crate::output::{print, print_json};
 use file::{Correlation, Measurement};
 
 /// States the uncertainty of a result.
@@ -92,7 +92,7 @@ struct Answers {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let measurement = Measurement::read(&arguments.file)?;
     let answers = answers(&measurement, arguments.level, (arguments.trials, arguments.seed))?;
-    if arguments.json { print(serde_json::to_string_pretty(&answers)?) } else { print(text(&answers).trim_end()) }
+    if arguments.json { print_json(&answers) } else { print(text(&answers).trim_end()) }
 }
 
 fn answers(measurement: &Measurement, level: f64, (trials, seed): (u64, u64)) -> Result<Answers, Box<dyn Error>> {

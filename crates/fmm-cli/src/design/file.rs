@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::fmt;
 use std::path::Path;
 
 use fmm_identify::{Aim, Candidate, Guess, Known, Machine, PlannedSensor, PlannedTest};
 use fmm_model::{ModelError, Oscillator, Rounded};
 use fmm_record::{Quantity, Record};
-use serde::de::{Error as _, MapAccess, Visitor};
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use crate::scenario::{ScenarioError, laws};
+use crate::files;
+use crate::scenario::{Entries, Field, given_twice, laws};
 
 /// What a file asks for.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ struct OfMachine {
 #[serde(deny_unknown_fields)]
 struct Guessed {
     law: String,
-    #[serde(deserialize_with = "each_once")]
+    #[serde(deserialize_with = "numbers")]
     values: BTreeMap<String, f64>,
     /// Relative standard uncertainty of the values.
     within: Option<f64>,
@@ -141,29 +141,15 @@ fn seed() -> u64 {
 }
 
 /// Numbers by their names, each name once: a map would keep the last that JSON has.
-fn each_once<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, f64>, D::Error> {
-    struct EachOnce;
-
-    impl<'de> Visitor<'de> for EachOnce {
-        type Value = BTreeMap<String, f64>;
-
-        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-            f.write_str("numbers by their names")
-        }
-
-        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-            let mut values = BTreeMap::new();
-            while let Some((key, value)) = map.next_entry::<String, f64>()? {
-                if values.contains_key(&key) {
-                    return Err(A::Error::custom(format_args!("duplicate field `{key}`")));
-                }
-                values.insert(key, value);
-            }
-            Ok(values)
-        }
-    }
-
-    deserializer.deserialize_map(EachOnce)
+fn numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, f64>, D::Error> {
+    let Field::Object(Entries(entries)) = Field::deserialize(deserializer)? else {
+        return Err(D::Error::custom("values are numbers by their names"));
+    };
+    let number = |(key, field)| match field {
+        Field::Number(number) => Ok((key, number)),
+        _ => Err(D::Error::custom(format_args!("{key} must be a number"))),
+    };
+    entries.into_iter().map(number).collect()
 }
 
 /// Tests in a file at most.
@@ -207,19 +193,12 @@ impl Choose {
 impl Wanted {
     /// Reads the file, which is JSON if its name ends so, and TOML otherwise.
     pub(super) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
-        let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let read = if is_json { serde_json::from_str(&text).map_err(Into::into) } else { Self::file_of_toml(&text) };
-        read.and_then(Self::of).map_err(|error| format!("{}: {error}", path.display()).into())
-    }
-
-    fn file_of_toml(text: &str) -> Result<File, Box<dyn Error>> {
-        Ok(toml::from_str(text)?)
+        Ok(Self::of(files::document(path)?).map_err(files::named(path))?)
     }
 
     #[cfg(test)]
     pub(super) fn of_toml(text: &str) -> Result<Self, Box<dyn Error>> {
-        Self::of(Self::file_of_toml(text)?)
+        Self::of(toml::from_str(text)?)
     }
 
     fn of(file: File) -> Result<Self, Box<dyn Error>> {
@@ -286,8 +265,7 @@ impl Guessed {
             let mut given = self.values.iter().filter(|(key, _)| slot.is(key));
             let value = given.next().map(|(_, value)| *value).or(slot.default);
             if let Some((key, _)) = given.next() {
-                let (parameter, key) = (slot.name.to_owned(), key.clone());
-                return Err(format!("[guess] values: {}", ScenarioError::GivenTwice { law, parameter, key }).into());
+                return Err(format!("[guess] values: {}", given_twice(law, slot, key)).into());
             }
             values.push(value.ok_or_else(|| format!("[guess] values of {law} lack {}", slot.description()))?);
         }

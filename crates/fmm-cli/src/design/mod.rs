@@ -15,7 +15,8 @@ use clap::Args;
 use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
 use serde::Serialize;
 
-use crate::output::{Output, drawn, print};
+use crate::files;
+use crate::output::{Output, drawn, print, print_json};
 use file::{Robust, Wanted};
 
 /// Says which tests to make.
@@ -104,13 +105,12 @@ struct Answer {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let named = |error| format!("{}: {error}", arguments.file.display());
-    let answer = answer(Wanted::read(&arguments.file)?).map_err(named)?;
+    let answer = answer(Wanted::read(&arguments.file)?).map_err(files::named(&arguments.file))?;
     if let Some(folder) = arguments.output.folder()? {
         figures::draw(folder, &answer)?;
         drawn(folder, "design.svg");
     }
-    if arguments.output.json { print(serde_json::to_string_pretty(&answer)?) } else { print(text(&answer).trim_end()) }
+    if arguments.output.json { print_json(&answer) } else { print(text(&answer).trim_end()) }
 }
 
 fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {

@@ -11,8 +11,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::figure::{self, Layer, Panel, Role, label};
+use crate::files::named;
 use crate::input::Held;
-use crate::output::{Output, drawn, print};
+use crate::output::{Output, drawn, print, print_json};
 use clap::Args;
 use fmm_identify::{
     Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation, compare_force,
@@ -94,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             "preferred": compared.preferred().model(),
             "is_decided": compared.is_decided(),
         });
-        return print(format_args!("{document:#}"));
+        return print_json(&document);
     }
     let mut out = String::new();
     for (file, record) in arguments.files.iter().zip(&records) {
@@ -194,7 +195,7 @@ fn onsets(record: &ForceRecord) -> Value {
 
 /// How well the model predicts the record of a `file` to which it was not fitted.
 fn validation(found: &ForceIdentification, file: &Path, record: &ForceRecord) -> Result<Validation, String> {
-    found.validate_on(record).map_err(|error| format!("{}: {error}", file.display()))
+    found.validate_on(record).map_err(named(file))
 }
 
 fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
@@ -282,9 +283,8 @@ fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel
 /// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of
 /// its half range.
 fn phases(record: &ForceRecord) -> Vec<f64> {
-    let ends =
-        |values: &[f64]| values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
-    let ([low, high], [slow, fast]) = (ends(record.positions()), ends(record.velocities()));
+    let ends = |values: &[f64]| figure::ends(values.iter().copied());
+    let ((low, high), (slow, fast)) = (ends(record.positions()), ends(record.velocities()));
     let share = |value: f64, centre: f64, half: f64| if half > 0.0 { (value - centre) / half } else { 0.0 };
     let reach = fast.max(-slow);
     let phase = |(x, v): (&f64, &f64)| {

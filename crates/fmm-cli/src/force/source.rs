@@ -7,6 +7,8 @@ use clap::Args;
 use fmm_identify::ForceRecord;
 use fmm_record::{Column, DataFile, Label, Quantity, Reader, RecordError, WrittenUnit};
 
+use crate::files::named;
+
 /// Which columns of a table are what.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Source {
@@ -120,7 +122,7 @@ impl Source {
         // differ.
         let reader = Reader::default().rate(1.0);
         let (file, head) = (reader.open(path)?, reader.to(0.0).open(path)?);
-        self.record(&file, &head).map_err(|error| format!("{}: {error}", path.display()).into())
+        self.record(&file, &head).map_err(|error| named(path)(error).into())
     }
 
     /// The record of a `file`, of which the first sample alone, the `head`, tells the columns: gaps further on matter

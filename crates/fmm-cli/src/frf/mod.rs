@@ -13,9 +13,11 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use crate::files::named;
+use crate::input::Measured;
 use crate::output::{Output, drawn, print};
 use analysis::{Analysis, Window};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use fmm_frf::{FrequencyResponse, ResponseForm};
 use fmm_record::Quantity;
 use serde_json::json;
@@ -54,23 +56,6 @@ pub(crate) struct Arguments {
     exponential_end: f64,
     #[command(flatten)]
     output: Output,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Measured {
-    Displacement,
-    Velocity,
-    Acceleration,
-}
-
-impl From<Measured> for Quantity {
-    fn from(measured: Measured) -> Self {
-        match measured {
-            Measured::Displacement => Self::Displacement,
-            Measured::Velocity => Self::Velocity,
-            Measured::Acceleration => Self::Acceleration,
-        }
-    }
 }
 
 /// The form of the response that all trials have.
@@ -178,7 +163,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         response_scale: arguments.response_scale,
         rate: arguments.rate,
     };
-    let read = |path: &PathBuf| choice.read(path).map_err(|error| format!("{}: {error}", path.display()));
+    let read = |path: &PathBuf| choice.read(path).map_err(named(path));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
     let analysis = Analysis::of(&trials, form(&trials)?, arguments.window, arguments.exponential_end)?;
     let text =

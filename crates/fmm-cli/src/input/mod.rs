@@ -14,6 +14,7 @@ use fmm_frf::{BackboneOptions, IsolatedMode, decay_modes};
 use fmm_identify::Preparation;
 use fmm_record::{Column, Quantity, Record, Request, WrittenUnit};
 
+use crate::files;
 pub(crate) use question::{Held, Question};
 use source::BUNDLED;
 pub(crate) use source::{Choice, Input};
@@ -122,9 +123,7 @@ impl Given {
     pub(crate) fn bytes(&self) -> Result<Cow<'static, [u8]>, Box<dyn Error>> {
         Ok(match &self.file {
             None => Cow::Borrowed(BUNDLED.1),
-            Some(file) => {
-                Cow::Owned(std::fs::read(file).map_err(|error| format!("cannot read {}: {error}", file.display()))?)
-            }
+            Some(file) => Cow::Owned(files::bytes(file)?),
         })
     }
 

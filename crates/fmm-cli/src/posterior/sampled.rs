@@ -8,7 +8,7 @@ use fmm_model::Rounded;
 use serde::Serialize;
 
 use super::corner::corner;
-use crate::page::{cell, escaped, figure, table, text_cell, words};
+use crate::page::{bullets, cell, escaped, figure, optional_cell, row_heading, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -56,9 +56,7 @@ impl Posterior {
                 "corner",
             )
         };
-        let items =
-            posterior.warnings().iter().map(|warning| format!("<li>{}</li>\n", escaped(warning))).collect::<Vec<_>>();
-        let warnings = if items.is_empty() { String::new() } else { format!("<ul>\n{}</ul>\n", items.concat()) };
+        let warnings = bullets(posterior.warnings().iter().cloned());
         format!(
             "<p>By {} draws of {} chains: {}. All intervals hold 95 %.</p>\n{warnings}{intervals}{plot}{}",
             posterior.posterior().len(),
@@ -71,7 +69,6 @@ impl Posterior {
 
 fn row(marginal: &Marginal, intervals: &IntervalComparison) -> Vec<String> {
     let rounded = Rounded::new(marginal.mean(), Some(marginal.standard_deviation()));
-    let or_none = |text: Option<String>| text_cell(&text.unwrap_or_else(|| "–".to_owned()));
     let both = |(low, high): (f64, f64)| rounded.interval(low, high);
     let profile = intervals.profile().map(|ends| match ends {
         (Some(low), Some(high)) => both((low, high)),
@@ -81,12 +78,12 @@ fn row(marginal: &Marginal, intervals: &IntervalComparison) -> Vec<String> {
     });
     let effective = marginal.bulk_effective_size().min(marginal.tail_effective_size());
     vec![
-        format!("<th scope=\"row\">{}</th>", escaped(&words(intervals.name()))),
+        row_heading(&words(intervals.name())),
         text_cell(&rounded.to_string()),
         text_cell(marginal.parameter().unit()),
-        or_none(marginal.interval(LEVEL).map(both)),
-        or_none(intervals.wald().map(both)),
-        or_none(profile),
+        optional_cell(marginal.interval(LEVEL).map(both)),
+        optional_cell(intervals.wald().map(both)),
+        optional_cell(profile),
         cell(if intervals.agrees() { "yes" } else { "no" }),
         text_cell(&format!("{effective:.0}")),
     ]
@@ -97,11 +94,11 @@ fn checks(posterior: &IdentificationPosterior) -> String {
         return String::new();
     }
     let rows = posterior.checks().iter().map(|check| {
-        let median = check.median().map_or_else(|| "–".to_owned(), |median| Rounded::new(median, None).to_string());
+        let median = check.median().map(|median| Rounded::new(median, None).to_string());
         vec![
-            format!("<th scope=\"row\">{}</th>", escaped(check.feature())),
+            row_heading(check.feature()),
             text_cell(&Rounded::new(check.measured(), None).to_string()),
-            text_cell(&median),
+            optional_cell(median),
             text_cell(check.unit()),
             text_cell(&format!("{:.3}", check.p_value())),
         ]

@@ -1,9 +1,9 @@
 //! The budget of a report: where the uncertainty of each finding comes from.
 
-use fmm_identify::{Contribution, Finding, Identification};
+use fmm_identify::{Contribution, Finding, Identification, Source};
 use fmm_model::Rounded;
 
-use crate::page::{escaped, table, text_cell, words};
+use crate::page::{optional_cell, row_heading, table, text_cell, words};
 
 /// A share below this is not worth a number (1).
 const LITTLE: f64 = 5e-4;
@@ -26,18 +26,11 @@ pub(super) fn budget(preferred: &Identification) -> String {
         return "<p>No finding has an uncertainty.</p>\n".to_owned();
     }
     let row = |(finding, parts): &(&Finding, Vec<Contribution>)| {
-        let name = words(finding.parameter().name());
+        let parameter = finding.parameter();
         let u = of_size(finding.uncertainty()?);
-        let mut cells = vec![
-            format!("<th scope=\"row\">{}</th>", escaped(&name)),
-            text_cell(&u),
-            text_cell(finding.parameter().unit()),
-        ];
-        for source in &sources {
-            let part = parts.iter().find(|part| part.source == *source);
-            cells.push(text_cell(&part.map_or_else(|| "–".to_owned(), text)));
-        }
-        Some(cells)
+        let heads = [row_heading(&words(parameter.name())), text_cell(&u), text_cell(parameter.unit())];
+        let part = |source: &Source| optional_cell(parts.iter().find(|part| part.source == *source).map(text));
+        Some(heads.into_iter().chain(sources.iter().map(part)).collect())
     };
     let names: Vec<String> = sources.iter().map(ToString::to_string).collect();
     let headings: Vec<&str> = ["quantity", "u", "unit"].into_iter().chain(names.iter().map(String::as_str)).collect();

@@ -13,12 +13,11 @@ use fmm_model::{Rounded, coverage_factor};
 use sha2::{Digest, Sha256};
 
 use self::budget::{budget, of_size};
-pub(crate) use self::found::Found;
+pub(crate) use self::found::{Found, Pictures};
 use self::profiles::profiles;
 use crate::backbone;
 use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
-use crate::page::{cell, escaped, figure, page, table, text_cell, words};
-use crate::pictures::Pictures;
+use crate::page::{bullets, cell, escaped, figure, optional_cell, page, row_heading, section, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -59,10 +58,6 @@ pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<Str
     Ok(page(&title, &body.concat()))
 }
 
-fn section(title: &str, html: &str) -> String {
-    format!("<section><h2>{}</h2>\n{html}</section>\n", escaped(title))
-}
-
 /// Each quantity with its standard uncertainty, and expanded as the GUM asks.
 fn findings(found: &Found) -> String {
     let row = |finding: &Finding| {
@@ -80,15 +75,14 @@ fn findings(found: &Found) -> String {
             Origin::Fitted(_) => "fitted",
             _ => "derived",
         };
-        let or_none = |text: Option<String>| text_cell(&text.unwrap_or_else(|| "–".to_owned()));
         vec![
-            format!("<th scope=\"row\">{}</th>", escaped(&words(parameter.name()))),
+            row_heading(&words(parameter.name())),
             text_cell(&rounded.to_string()),
             text_cell(parameter.unit()),
-            or_none(interval),
-            or_none(factor.filter(|_| u.is_some()).map(|k| format!("{k:.2}"))),
-            or_none(expanded),
-            or_none(u.map(|_| if freedom < 1e5 { format!("{freedom:.0}") } else { "∞".to_owned() })),
+            optional_cell(interval),
+            optional_cell(factor.filter(|_| u.is_some()).map(|k| format!("{k:.2}"))),
+            optional_cell(expanded),
+            optional_cell(u.map(|_| if freedom < 1e5 { format!("{freedom:.0}") } else { "∞".to_owned() })),
             cell(origin),
         ]
     };
@@ -103,10 +97,8 @@ fn findings(found: &Found) -> String {
 }
 
 fn warnings(found: &Found) -> String {
-    let items =
-        found.comparison.warnings().iter().map(|warning| format!("<li>{}</li>\n", escaped(&warning.to_string())));
-    let items = items.collect::<Vec<_>>().concat();
-    if items.is_empty() { "<p>None was found.</p>\n".to_owned() } else { format!("<ul>\n{items}</ul>\n") }
+    let list = bullets(found.comparison.warnings().iter().map(ToString::to_string));
+    if list.is_empty() { "<p>None was found.</p>\n".to_owned() } else { list }
 }
 
 /// The laws that were tried.
@@ -118,11 +110,11 @@ fn laws(found: &Found) -> String {
     let rows = comparison.identifications().iter().zip(standings).map(|(law, (score, p))| {
         let stop = law.motions().iter().find_map(FittedMotion::stop_time);
         vec![
-            format!("<th scope=\"row\">{}</th>", escaped(law.law())),
+            row_heading(law.law()),
             text_cell(&format!("{:.4e}", law.rms_residual())),
             text_cell(&law.fit().rank().to_string()),
             text_cell(&law.motions().iter().map(FittedMotion::half_swings).sum::<usize>().to_string()),
-            text_cell(&stop.map_or_else(|| "–".to_owned(), |time| format!("{time:.4}"))),
+            optional_cell(stop.map(|time| format!("{time:.4}"))),
             text_cell(&format!("{:.1}", score - best)),
             if is_excluded(law) { cell("excluded") } else { text_cell(&format!("{p:.3}")) },
         ]

@@ -8,7 +8,7 @@ use fmm_model::Rounded;
 
 use super::{Found, LEVEL};
 use crate::figure::{Layer, Panel, Role, drawn, label};
-use crate::page::{escaped, figure, table, text_cell, words};
+use crate::page::{bullets, figure, row_heading, table, text_cell, words};
 
 /// Points of a parabola.
 const POINTS: usize = 200;
@@ -19,12 +19,8 @@ const TOP: f64 = 1.6;
 pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
     let profiles = found.comparison.preferred().profiles(std::slice::from_ref(&found.decay), LEVEL)?;
     let (bent, straight): (Vec<&Profile>, Vec<_>) = profiles.profiles().iter().partition(|profile| profile.is_bent());
-    let left_out: Vec<String> = profiles
-        .left_out()
-        .iter()
-        .map(|(parameter, error)| format!("<li>{}: none, as {}</li>\n", name(parameter), escaped(&error.to_string())))
-        .collect();
-    let left_out = if left_out.is_empty() { String::new() } else { format!("<ul>\n{}</ul>\n", left_out.concat()) };
+    let left_out = profiles.left_out().iter();
+    let left_out = bullets(left_out.map(|(parameter, error)| format!("{}: none, as {error}", words(parameter.name()))));
     let within = straight.iter().map(|profile| profile.bend()).fold(0.0, f64::max);
     let within = (100.0 * within).ceil().max(1.0);
     let said = match (bent.is_empty(), straight.is_empty()) {
@@ -40,16 +36,10 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
         (false, false) => format!("All other intervals are symmetric within {within:.0} % of k u."),
     };
     let rows = bent.iter().map(|profile| {
+        let value = Rounded::new(profile.value(), reach(profile)).to_string();
         vec![
-            format!("<th scope=\"row\">{}</th>", name(profile.parameter())),
-            text_cell(
-                &Rounded::new(profile.value(), reach(profile))
-                    .to_string()
-                    .split(" ± ")
-                    .next()
-                    .unwrap_or_default()
-                    .replace('(', ""),
-            ),
+            row_heading(&words(profile.parameter().name())),
+            text_cell(&value.split(" ± ").next().unwrap_or_default().replace('(', "")),
             text_cell(profile.parameter().unit()),
             text_cell(&straight_text(profile)),
             text_cell(&profile_text(profile)),
@@ -69,10 +59,6 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
         Profiles::MOST_EVALUATIONS,
         figures.collect::<Vec<_>>().concat()
     ))
-}
-
-fn name(parameter: &fmm_model::Parameter) -> String {
-    escaped(&words(parameter.name()))
 }
 
 /// Half the width of the interval by value ± k u, to which its ends are rounded.

@@ -1,16 +1,19 @@
 //! The laws by their names.
 
-use fmm_friction::{
-    FamilyVisitor, Gms, LawError, LawFamily, LawKind, MaxwellSlip, MaxwellSlipOf, Smoothed, Stribeck, catalogue,
-};
+use std::error::Error;
 
-use super::ScenarioError;
-use super::contact::{AnySliding, Contact, Law, OfGms, OfSmoothed};
+use fmm_friction::{
+    FamilyVisitor, Gms, LawError, LawFamily, LawKind, LawVisitor as _, MaxwellSlip, MaxwellSlipOf, Smoothed, Stribeck,
+    catalogue,
+};
+use fmm_sim::{Bristle, Engine as _, RungeKutta, Scenario, Trajectory, simulate_into};
+
+use super::contact::{Contact, Make};
 use super::entries::{Entries, Field};
 use super::keys::{Shape, Slot};
 use super::law::Given;
 
-type Made = Result<Box<dyn Contact>, ScenarioError>;
+type Made = Result<Contact, Box<dyn Error>>;
 
 /// A law that a scenario can name.
 pub(crate) struct Entry {
@@ -39,7 +42,7 @@ impl FamilyVisitor for AllEntries {
             LawKind::Bristle => false,
             LawKind::Sliding | LawKind::PiecewiseLinear => !OF_ACCELERATION.contains(&F::NAME),
         };
-        let make = |given: Given| made(&given, |values| F::at(values).map(Law::<F, _>::new));
+        let make = |given: Given| made(&given, |values| F::at(values).map(of_family::<F>));
         Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make, is_of_speed })
     }
 }
@@ -54,7 +57,7 @@ const MAXWELL_SLIP: Entry = Entry {
     slots: || vec![Slot::of("stiffness", "κ", "1/m", Shape::List), Slot::of("level", "w", "1", Shape::List)],
     make: |given| {
         let elements = given.pairs()?;
-        made(&given, |_| MaxwellSlip::new(&elements).map(Law::<MaxwellSlipOf<1>, _>::new))
+        made(&given, |_| MaxwellSlip::new(&elements).map(of_family::<MaxwellSlipOf<1>>))
     },
     is_of_speed: false,
 };
@@ -72,7 +75,8 @@ const GMS: Entry = Entry {
         let elements = given.pairs()?;
         made(&given, |values| {
             let (curve, attraction) = values.split_at(Stribeck::PARAMETERS.len());
-            Gms::new(Stribeck::at(curve)?, attraction[0], &elements).map(Law::<OfGms, _>::new)
+            let law = Gms::new(Stribeck::at(curve)?, attraction[0], &elements)?;
+            Ok(Make { law, automatic: |scenario, sampling| Bristle::default().run(scenario, sampling) }.bristle())
         })
     },
     is_of_speed: false,
@@ -83,25 +87,33 @@ const SMOOTHED: Entry = Entry {
     slots: || vec![Slot::of("law", "", "", Shape::Law), Slot::of("smoothing_width", "ε", "m/s", Shape::Number)],
     make: |mut given| {
         let (inner, law) = contact(given.inner()?)?;
-        let Some(smooth) = law.into_sliding() else {
-            return Err(ScenarioError::NotSliding { law: inner, known: named(|entry| entry.is_of_speed) });
+        let Some(law) = law.sliding else {
+            let known = named(|entry| entry.is_of_speed);
+            return Err(format!(
+                "the law {inner} has an internal state and cannot be smoothed in the speed; {known} can"
+            )
+            .into());
         };
-        made(&given, |values| Smoothed::new(AnySliding::new(smooth), values[0]).map(Law::<OfSmoothed, _>::new))
+        made(&given, |values| {
+            let law = Smoothed::new(law, values[0])?;
+            Ok(Make { law, automatic: |scenario, sampling| RungeKutta::default().run(scenario, sampling) }.sliding())
+        })
     },
     is_of_speed: true,
 };
 
-fn made<C: Contact + 'static>(given: &Given, make: impl FnOnce(&[f64]) -> Result<C, LawError>) -> Made {
-    let law = given.law();
-    match make(&given.numbers()?) {
-        Ok(contact) => Ok(Box::new(contact)),
-        Err(source) => Err(ScenarioError::Law { law, source }),
-    }
+/// A law of a family, moved by the engine that suits law and machine.
+fn of_family<F: LawFamily>(law: F::At<f64>) -> Contact {
+    let automatic = |scenario: &Scenario<f64, F::At<f64>>, sampling: &_| {
+        let mut trajectory = Trajectory::new();
+        simulate_into::<F, _>(scenario, sampling, None, &mut trajectory)?;
+        Ok(trajectory)
+    };
+    F::visit(Make { law, automatic })
 }
 
-/// The names of all laws, for a message.
-fn known() -> String {
-    format!("the laws are {}", named(|_| true))
+fn made(given: &Given, make: impl FnOnce(&[f64]) -> Result<Contact, LawError>) -> Made {
+    Ok(make(&given.numbers()?).map_err(|error| format!("the law {}: {error}", given.law()))?)
 }
 
 /// The names of the laws of which this is true.
@@ -113,17 +125,15 @@ fn named(is_meant: impl Fn(&Entry) -> bool) -> String {
 /// The law of an object `{name: {parameter: value, …}}`, with its name.
 ///
 /// # Errors
-/// [`ScenarioError`] if there is no such law or its parameters are not what it needs.
-pub(crate) fn contact(law: Entries) -> Result<(&'static str, Box<dyn Contact>), ScenarioError> {
-    let Ok([(name, field)]) = <[_; 1]>::try_from(law.0) else {
-        return Err(ScenarioError::NotOneLaw { known: known() });
+/// If there is no such law, or its parameters are not what it needs.
+pub(crate) fn contact(law: Entries) -> Result<(&'static str, Contact), Box<dyn Error>> {
+    let known = || format!("the laws are {}", named(|_| true));
+    let Ok([(name, Field::Object(parameters))]) = <[_; 1]>::try_from(law.0) else {
+        let example = "{\"coulomb\": {\"mu\": 0.2}}";
+        return Err(format!("a law is an object with one key, its name, such as {example}; {}", known()).into());
     };
-    let Some(entry) = laws().into_iter().find(|entry| entry.name == name) else {
-        return Err(ScenarioError::UnknownLaw { law: name, known: known() });
-    };
-    let Field::Object(parameters) = field else {
-        return Err(ScenarioError::NotOneLaw { known: known() });
-    };
+    let entry = laws().into_iter().find(|entry| entry.name == name);
+    let entry = entry.ok_or_else(|| format!("there is no law \"{name}\"; {}", known()))?;
     let given = Given::sort(entry.name, (entry.slots)(), parameters)?;
     Ok((entry.name, (entry.make)(given)?))
 }

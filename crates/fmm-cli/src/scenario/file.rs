@@ -1,11 +1,13 @@
 //! The fields of a scenario file. All numbers are in SI units.
 
+use std::error::Error;
+
 use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_sim::{Excitation, SimulationError};
 use serde::Deserialize;
 
+use super::EngineName;
 use super::entries::Entries;
-use super::{EngineName, ScenarioError};
 
 /// A scenario as it is written.
 #[derive(Debug, Deserialize)]
@@ -114,11 +116,16 @@ impl Machine {
     /// The oscillator of these numbers.
     ///
     /// # Errors
-    /// [`ScenarioError::TwoDampings`], or [`ScenarioError::Quantity`] for a number that cannot be.
-    pub(crate) fn oscillator(&self) -> Result<Oscillator, ScenarioError> {
+    /// Of two descriptions of one damping, or of a number that cannot be.
+    pub(crate) fn oscillator(&self) -> Result<Oscillator, Box<dyn Error>> {
         let drag = &self.damping;
         let damping = match &drag.peak_velocity_line {
-            Some(_) if drag.linear.is_some() || drag.quadratic.is_some() => return Err(ScenarioError::TwoDampings),
+            Some(_) if drag.linear.is_some() || drag.quadratic.is_some() => {
+                return Err(
+                    "damping is given by linear and quadratic, or by peak_velocity_line, which stands for both; not by both ways"
+                        .into(),
+                );
+            }
             Some(line) => Damping::from_peak_velocity_line(line.intercept, line.slope)?,
             None => Damping::new(drag.linear.unwrap_or(0.0), drag.quadratic.unwrap_or(0.0))?,
         };

@@ -1,6 +1,5 @@
 //! The object of a law in a scenario, read against the parameters that the law has.
 
-use super::ScenarioError;
 use super::entries::{Entries, Field};
 use super::keys::{Shape, Slot};
 
@@ -13,11 +12,7 @@ pub(crate) struct Given {
 
 impl Given {
     /// Sorts `entries` into `slots`.
-    ///
-    /// # Errors
-    /// [`ScenarioError::UnknownParameter`] for a key that none of them has, [`ScenarioError::GivenTwice`] for two keys
-    /// of one, [`ScenarioError::MissingParameter`] for one that has neither a value nor a default.
-    pub(crate) fn sort(law: &'static str, slots: Vec<Slot>, entries: Entries) -> Result<Self, ScenarioError> {
+    pub(crate) fn sort(law: &'static str, slots: Vec<Slot>, entries: Entries) -> Result<Self, String> {
         let known = || {
             let texts: Vec<String> = slots.iter().map(Slot::description).collect();
             texts.join(", ")
@@ -26,15 +21,16 @@ impl Given {
         let mut seen = vec![false; slots.len()];
         for (key, field) in entries.0 {
             let Some(index) = slots.iter().position(|slot| slot.is(&key)) else {
-                return Err(ScenarioError::UnknownParameter { law, key, known: known() });
+                return Err(format!("the law {law} has no parameter \"{key}\"; its parameters are {}", known()));
             };
             if std::mem::replace(&mut seen[index], true) {
-                return Err(ScenarioError::GivenTwice { law, parameter: slots[index].name.to_owned(), key });
+                return Err(given_twice(law, &slots[index], &key));
             }
             fields[index] = Some(field);
         }
         if let Some(index) = fields.iter().position(Option::is_none) {
-            return Err(ScenarioError::MissingParameter { law, missing: slots[index].description(), known: known() });
+            let missing = slots[index].description();
+            return Err(format!("the law {law} needs {missing}; its parameters are {}", known()));
         }
         Ok(Self { law, slots, fields })
     }
@@ -45,10 +41,7 @@ impl Given {
     }
 
     /// The numbers, in the order of the slots, lists and laws left out.
-    ///
-    /// # Errors
-    /// [`ScenarioError::WrongShape`] if one is something else.
-    pub(crate) fn numbers(&self) -> Result<Vec<f64>, ScenarioError> {
+    pub(crate) fn numbers(&self) -> Result<Vec<f64>, String> {
         let numbers = self.slots.iter().zip(&self.fields).filter(|(slot, _)| slot.shape == Shape::Number);
         numbers
             .map(|(slot, field)| match field {
@@ -59,10 +52,7 @@ impl Given {
     }
 
     /// Pairs of the two lists.
-    ///
-    /// # Errors
-    /// [`ScenarioError::WrongShape`] if one is no list, [`ScenarioError::ElementLists`] if they differ in length.
-    pub(crate) fn pairs(&self) -> Result<Vec<(f64, f64)>, ScenarioError> {
+    pub(crate) fn pairs(&self) -> Result<Vec<(f64, f64)>, String> {
         let mut lists = Vec::new();
         for (slot, field) in self.slots.iter().zip(&self.fields).filter(|(slot, _)| slot.shape == Shape::List) {
             match field {
@@ -72,28 +62,31 @@ impl Given {
         }
         let [first, second] = lists[..] else { return Ok(Vec::new()) };
         if first.len() != second.len() {
-            return Err(ScenarioError::ElementLists { law: self.law, stiffnesses: first.len(), others: second.len() });
+            let (law, stiffnesses, others) = (self.law, first.len(), second.len());
+            return Err(format!(
+                "the law {law} needs two numbers for each element, but {stiffnesses} stiffnesses and {others} others were given"
+            ));
         }
         Ok(first.iter().copied().zip(second.iter().copied()).collect())
     }
 
     /// The law inside.
-    ///
-    /// # Errors
-    /// [`ScenarioError::WrongShape`] if it is no object.
-    pub(crate) fn inner(&mut self) -> Result<Entries, ScenarioError> {
-        for index in 0..self.slots.len() {
-            if self.slots[index].shape == Shape::Law {
-                return match self.fields[index].take() {
-                    Some(Field::Object(entries)) => Ok(entries),
-                    _ => Err(self.wrong(&self.slots[index], "a law")),
-                };
-            }
+    pub(crate) fn inner(&mut self) -> Result<Entries, String> {
+        let Some(index) = self.slots.iter().position(|slot| slot.shape == Shape::Law) else {
+            return Ok(Entries(Vec::new()));
+        };
+        match self.fields[index].take() {
+            Some(Field::Object(entries)) => Ok(entries),
+            _ => Err(self.wrong(&self.slots[index], "a law")),
         }
-        Ok(Entries(Vec::new()))
     }
 
-    fn wrong(&self, slot: &Slot, expected: &'static str) -> ScenarioError {
-        ScenarioError::WrongShape { law: self.law, parameter: slot.description(), expected }
+    fn wrong(&self, slot: &Slot, expected: &str) -> String {
+        format!("{} of the law {} must be {expected}", slot.description(), self.law)
     }
+}
+
+/// The refusal of a second `key` for one parameter.
+pub(crate) fn given_twice(law: &str, slot: &Slot, key: &str) -> String {
+    format!("the law {law} has its parameter {} twice, once as \"{key}\"", slot.name)
 }

@@ -10,7 +10,6 @@ mod catalogue;
 mod contact;
 mod engine;
 mod entries;
-mod error;
 mod file;
 mod keys;
 mod law;
@@ -22,8 +21,9 @@ mod tests;
 
 pub(crate) use catalogue::{Entry, laws};
 pub(crate) use engine::EngineName;
-pub(crate) use error::ScenarioError;
+pub(crate) use entries::{Entries, Field};
 pub(crate) use keys::Slot;
+pub(crate) use law::given_twice;
 pub(crate) use motion::Motion;
 pub(crate) use plan::Plan;
 pub(crate) use run::Simulation;

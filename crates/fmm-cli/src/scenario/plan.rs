@@ -1,9 +1,10 @@
 //! Plan of a simulation: when it is sampled and when it ends.
 
-use fmm_model::ModelError;
+use std::error::Error;
+
+use fmm_model::{ModelError, Rounded};
 use fmm_sim::Sampling;
 
-use super::ScenarioError;
 use super::file::Output;
 
 /// More samples than this nobody reads, and their document would not fit into memory.
@@ -28,14 +29,16 @@ impl Plan {
     /// The sample times of `output` in a motion of `duration` (s).
     ///
     /// # Errors
-    /// [`ScenarioError::NoEnd`], [`ScenarioError::TooManySamples`], or what makes no sampling.
-    pub(crate) fn new(duration: Option<f64>, output: Option<Output>) -> Result<Self, ScenarioError> {
+    /// Without an end, with too many samples, or with what makes no sampling.
+    pub(crate) fn new(duration: Option<f64>, output: Option<Output>) -> Result<Self, Box<dyn Error>> {
         if let Some(duration) = duration {
             ModelError::require_positive("duration", duration, "s")?;
         }
         match (output, duration) {
             (Some(Output::Times(times)), _) => Self::at(times, duration.unwrap_or(0.0)),
-            (_, None) => Err(ScenarioError::NoEnd),
+            (_, None) => {
+                Err("the scenario needs a duration (s), or output times, the last of which is then the end".into())
+            }
             (None, Some(duration)) => {
                 let interval = duration / (USUAL_SAMPLES - 1) as f64;
                 Ok(Self { sampling: Sampling::uniform(interval, USUAL_SAMPLES)?, kept: USUAL_SAMPLES, end: duration })
@@ -45,7 +48,11 @@ impl Plan {
                 // A duration that is a multiple of the interval but for rounding has its last sample.
                 let intervals = (duration * rate * (1.0 + 4.0 * f64::EPSILON)).floor();
                 if intervals.is_nan() || intervals >= MOST_SAMPLES {
-                    return Err(ScenarioError::TooManySamples { count: intervals + 1.0, most: MOST_SAMPLES });
+                    let count = Rounded::every_digit(intervals + 1.0);
+                    return Err(format!(
+                        "{count} samples were asked for, and at most {MOST_SAMPLES} are given; lower the rate or the duration"
+                    )
+                    .into());
                 }
                 let (interval, kept) = (1.0 / rate, intervals as usize + 1);
                 let reaches = intervals * interval >= duration;
@@ -58,8 +65,8 @@ impl Plan {
     /// Samples at `times` (s) of a motion that ends with the last of them, or at `end` (s) if that is later.
     ///
     /// # Errors
-    /// [`ScenarioError::Simulation`] if there are no times or they do not ascend from 0.
-    pub(crate) fn at(mut times: Vec<f64>, end: f64) -> Result<Self, ScenarioError> {
+    /// If there are no times or they do not ascend from 0.
+    pub(crate) fn at(mut times: Vec<f64>, end: f64) -> Result<Self, Box<dyn Error>> {
         let kept = times.len();
         let last = times.last().copied().unwrap_or(f64::INFINITY);
         if last < end {

@@ -1,5 +1,7 @@
 //! Run of a scenario: from its text to its motion.
 
+use std::error::Error;
+
 use fmm_model::Restoring;
 use fmm_sim::State;
 
@@ -8,14 +10,14 @@ use super::contact::{Contact, Setting};
 use super::engine::Choice;
 use super::entries::{Entries, Field};
 use super::file::{Drive, File};
-use super::{EngineName, Motion, Plan, ScenarioError};
+use super::{EngineName, Motion, Plan};
 
 /// A scenario, checked and ready to run.
 pub(crate) struct Simulation {
     title: String,
     description: String,
     law: &'static str,
-    contact: Box<dyn Contact>,
+    contact: Contact,
     setting: Setting,
     belt: f64,
     choice: Choice,
@@ -26,23 +28,28 @@ impl Simulation {
     /// Reads the text of a scenario file.
     ///
     /// # Errors
-    /// [`ScenarioError`], which says what is wrong and what would be right.
-    pub(crate) fn read(text: &str) -> Result<Self, ScenarioError> {
-        let file: File = serde_json::from_str(text)?;
+    /// Its text says what is wrong and what would be right.
+    pub(crate) fn read(text: &str) -> Result<Self, Box<dyn Error>> {
+        let file: File = serde_json::from_str(text).map_err(|error| format!("the scenario cannot be read: {error}"))?;
         let has_law = file.law.is_some();
         let (law, contact) = contact(file.law.unwrap_or_else(frictionless))?;
         let choice = Choice { engine: file.engine, tolerance: file.tolerance };
-        if !contact.engines().contains(&choice.engine) {
-            return Err(match wrong_engine(law, contact.as_ref(), choice.engine) {
-                ScenarioError::Engine { engine, possible, .. } if !has_law => {
-                    ScenarioError::EngineWithoutLaw { engine, possible }
-                }
-                error => error,
-            });
+        let engine = choice.engine;
+        if !contact.engines.contains(&engine) {
+            let possible = possible(&contact);
+            return Err(if has_law {
+                format!("the engine {engine} cannot take the law {law}; its engines are {possible}")
+            } else {
+                format!("the engine {engine} needs a law, and none was given; without one the engines are {possible}")
+            }
+            .into());
         }
-        let integrates = matches!(choice.engine, EngineName::RungeKutta | EngineName::Bristle);
+        let integrates = matches!(engine, EngineName::RungeKutta | EngineName::Bristle);
         if choice.tolerance.is_some() && !integrates {
-            return Err(ScenarioError::NoTolerance { engine: choice.engine });
+            return Err(format!(
+                "a tolerance belongs to the engines runge_kutta and bristle, but the engine is {engine}"
+            )
+            .into());
         }
         let belt = file.excitation.iter().map(Drive::belt).sum();
         let mut excitations = Vec::with_capacity(file.excitation.len());
@@ -60,23 +67,20 @@ impl Simulation {
     }
 
     /// The motion at the times that the scenario asks for.
-    ///
-    /// # Errors
-    /// [`ScenarioError::Simulation`] if the engine has no answer.
-    pub(crate) fn run(&self) -> Result<Motion, ScenarioError> {
+    pub(crate) fn run(&self) -> Result<Motion, Box<dyn Error>> {
         self.run_at(&self.plan)
     }
 
     /// The motion at the times of another `plan`.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
-    pub(crate) fn run_at(&self, plan: &Plan) -> Result<Motion, ScenarioError> {
+    /// `SimulationError` if the engine has no answer.
+    pub(crate) fn run_at(&self, plan: &Plan) -> Result<Motion, Box<dyn Error>> {
         let sampling = plan.sampling.clone().with_work();
-        match self.contact.simulate(&self.setting, self.choice, &sampling)? {
-            Some(trajectory) => Ok(Motion::new(&trajectory, plan, &self.setting)),
-            None => Err(wrong_engine(self.law, self.contact.as_ref(), self.choice.engine)),
-        }
+        let motion = (self.contact.simulate)(&self.setting, self.choice, &sampling)?;
+        let (law, engine) = (self.law, self.choice.engine);
+        let trajectory = motion.ok_or_else(|| format!("the engine {engine} cannot take the law {law}"))?;
+        Ok(Motion::new(&trajectory, plan, &self.setting))
     }
 
     /// What the scenario calls itself.
@@ -120,7 +124,7 @@ fn frictionless() -> Entries {
     Entries(vec![("viscous".to_owned(), Field::Object(nothing))])
 }
 
-fn wrong_engine(law: &'static str, contact: &dyn Contact, engine: EngineName) -> ScenarioError {
-    let possible: Vec<String> = contact.engines().iter().map(EngineName::to_string).collect();
-    ScenarioError::Engine { engine, law, possible: possible.join(", ") }
+/// Names of the engines that take the law.
+fn possible(contact: &Contact) -> String {
+    contact.engines.iter().map(EngineName::to_string).collect::<Vec<_>>().join(", ")
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use fmm_sim::SimulationError;
 
 use crate::figure::{self, Layer, Panel, Role};
-use crate::scenario::{Motion, Plan, ScenarioError, Simulation};
+use crate::scenario::{Motion, Plan, Simulation};
 
 /// Points of a curve besides those at events.
 const POINTS: usize = 2000;
@@ -28,8 +28,8 @@ pub(crate) fn draw(folder: &Path, scenario: &Simulation, motion: &Motion) -> Res
     let dense = match scenario.run_at(&Plan::at(times, end)?) {
         Ok(dense) => dense,
         // A method of fixed step has no times but its own.
-        Err(ScenarioError::Simulation(SimulationError::NotSupported { .. })) => motion.clone(),
-        Err(error) => return Err(error.into()),
+        Err(error) if matches!(error.downcast_ref(), Some(SimulationError::NotSupported { .. })) => motion.clone(),
+        Err(error) => return Err(error),
     };
     figure::stacked(&folder.join("motion.svg"), &motion_panels(scenario, &dense))?;
     figure::stacked(&folder.join("friction.svg"), &friction_panels(scenario, &dense))?;

@@ -4,17 +4,17 @@
 //! gives out its events and energies, or everything.
 
 mod figures;
-mod text;
 
 use std::error::Error;
+use std::fmt;
 use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::figure::{ends, label};
+use crate::files;
 use crate::output::{Output, drawn, print};
-use crate::scenario::Simulation;
-
-pub(crate) use text::HELP;
+use crate::scenario::{Motion, Simulation};
 
 /// Simulates a machine with a sliding contact.
 #[derive(Debug, Args)]
@@ -27,10 +27,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = &arguments.scenario;
-    let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let named = |error| format!("{}: {error}", path.display());
-    let scenario = Simulation::read(&text).map_err(named)?;
-    let motion = scenario.run().map_err(named)?;
+    let scenario = Simulation::read(&files::text(path)?).map_err(files::named(path))?;
+    let motion = scenario.run().map_err(files::named(path))?;
     if let Some(folder) = arguments.output.folder()? {
         figures::draw(folder, &scenario, &motion)?;
         drawn(folder, "{motion,friction}.svg");
@@ -38,6 +36,102 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if arguments.output.json {
         print(serde_json::to_string(&motion)?)
     } else {
-        print(text::Report { scenario: &scenario, motion: &motion }.to_string().trim_end())
+        print(Report { scenario: &scenario, motion: &motion }.to_string().trim_end())
+    }
+}
+
+/// Events printed at most; the document of `--json` has them all.
+const MOST_EVENTS: usize = 60;
+
+/// What a scenario holds.
+pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end (duration or output times) must be there:
+
+  { "title": "…", "description": "…",
+    "oscillator": {"mass": 10.391, "stiffness": 1982.0, "damping": {"linear": 0.2005, "quadratic": 0.437}},
+    "law": {"berger": {"mu0": 0.228, "mu1": 0.261, "alpha": 2.852}}, "normal_load": 8.604351,
+    "excitation": [{"half_sine": {"peak": 1000.0, "duration": 2.2e-3}}, {"belt": {"velocity": 0.2}}],
+    "initial": {"position": 0.0, "velocity": 0.196}, "duration": 1.6,
+    "output": {"rate": 1000.0}, "engine": "auto" }
+
+  oscillator   mass, stiffness, damping, restoring
+  damping      linear, quadratic, cubic, power {coefficient, exponent}, which add up; instead of linear and quadratic
+               peak_velocity_line {intercept, slope}; default none
+  restoring    "linear" (default), {"sine": {"length": 1.0}}, {"polynomial": {"cubic": 1.5, "quintic": 0.0}},
+               {"stop": {"distance": 0.02, "ratio": 5.0}} (5 times as stiff beyond 20 mm) or {"gap": {"gap": 0.001}}
+  law          an object with one key, see `fmm laws`; default no friction
+  normal_load  default 1, with which a coefficient is a force
+  excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, constant {force}, ramp {rate},
+               each with an optional delay; harmonic and base {amplitude, angular_frequency, phase}; belt {velocity}
+  initial      position, velocity; default 0
+  duration     default the last output time
+  output       {"times": […]} or {"rate": …}; default 1000 samples
+  engine       auto (default), exact, runge_kutta, bristle, thesis, moreau
+  tolerance    relative, for runge_kutta and bristle"#;
+
+/// A motion for the eye.
+struct Report<'a> {
+    scenario: &'a Simulation,
+    motion: &'a Motion,
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { scenario, motion } = self;
+        for line in [scenario.title(), scenario.description()] {
+            if !line.is_empty() {
+                writeln!(f, "{line}")?;
+            }
+        }
+        writeln!(f, "law {}, engine {}\n", scenario.law(), motion.engine)?;
+
+        let [position, velocity, _] = scenario.units();
+        let head = [label("x", position), label("v", velocity)];
+        writeln!(f, "{:>16}  {:13} {:>15} {:>15}  {:10} {:>10}", "t / s", "event", head[0], head[1], "next", "margin")?;
+        for event in motion.events.iter().take(MOST_EVENTS) {
+            let next = event.phase.map_or_else(|| event.next.to_owned(), |phase| format!("{} {phase}", event.next));
+            // Only where the velocity is zero is anything decided, and neither bristles nor a contact without a level
+            // decide.
+            let decided = motion.samples.z.is_empty()
+                && matches!(event.kind.as_str(), "zero_velocity" | "breakaway+" | "breakaway-");
+            let margin =
+                if decided && event.margin.is_finite() { format!("{:+.2e}", event.margin) } else { "-".to_owned() };
+            writeln!(
+                f,
+                "{:16.12}  {:13} {:+15.8e} {:+15.8e}  {next:10} {margin:>10}",
+                event.t, event.kind, event.x, event.v
+            )?;
+        }
+        if let Some(more) = motion.events.len().checked_sub(MOST_EVENTS).filter(|more| *more > 0) {
+            writeln!(f, "… and {more} more")?;
+        }
+
+        let (samples, energy) = (&motion.samples, &motion.energy);
+        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+        writeln!(f, "\nenergy at {} s (J)", last(&samples.t))?;
+        let line = |f: &mut fmt::Formatter, name, values: &[f64]| writeln!(f, "{name:>22} {:+.10e}", last(values));
+        line(f, "kinetic", &energy.kinetic)?;
+        line(f, "potential", &energy.potential)?;
+        match &energy.work {
+            Some(work) => {
+                line(f, "lost to friction", &work.friction)?;
+                line(f, "lost to damping", &work.viscous)?;
+                line(f, "brought from outside", &work.external)?;
+                line(f, "balance", &work.balance)?;
+            }
+            None => writeln!(f, "{:>22} not kept by this engine", "work")?,
+        }
+
+        let count = samples.t.len();
+        let first = samples.t.first().copied().unwrap_or(0.0);
+        writeln!(f, "\n{count} samples from {first} s to {} s", last(&samples.t))?;
+        for (name, values, unit) in [("position", &samples.x, position), ("velocity", &samples.v, velocity)] {
+            let (low, high) = ends(values.iter().copied());
+            writeln!(f, "{name:>22} {low:+.6e} to {high:+.6e} {unit}")?;
+        }
+        for (index, values) in samples.z.iter().enumerate() {
+            let (low, high) = ends(values.iter().copied());
+            writeln!(f, "{:>22} {low:+.6e} to {high:+.6e}", format!("state z{index}"))?;
+        }
+        Ok(())
     }
 }

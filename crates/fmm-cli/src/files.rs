@@ -1,0 +1,60 @@
+//! Files: their text, the documents in them, and folders, with errors that name the path.
+
+use std::error::Error;
+use std::fmt::Display;
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+
+/// Puts the path of a file before an error.
+pub(crate) fn named<E: Display>(path: &Path) -> impl Fn(E) -> String {
+    move |error| format!("{}: {error}", path.display())
+}
+
+/// Bytes of a file.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+}
+
+/// Text of a file.
+pub(crate) fn text(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+}
+
+/// Content of a file, which is JSON if its name ends so, and TOML otherwise.
+pub(crate) fn document<T: DeserializeOwned>(path: &Path) -> Result<T, Box<dyn Error>> {
+    let text = text(path)?;
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
+        Ok(serde_json::from_str(&text).map_err(named(path))?)
+    } else {
+        Ok(toml::from_str(&text).map_err(named(path))?)
+    }
+}
+
+/// Creates a folder unless it exists.
+pub(crate) fn create_folder(path: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(path).map_err(|error| format!("cannot create {}: {error}", path.display()))
+}
+
+/// Refuses a path at which no file can be, before work is done for it.
+pub(crate) fn require_writable(path: &Path) -> Result<(), String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if path.is_dir() {
+        return Err(format!("cannot write {}: it is a folder; give the name of a file", path.display()));
+    }
+    if folder.is_dir() {
+        Ok(())
+    } else {
+        Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()))
+    }
+}
+
+/// Writes a file at once: no other process ever sees a part of it.
+pub(crate) fn write(path: &Path, text: &str) -> Result<(), String> {
+    // Another process may write the same file with the same content.
+    let mut part = path.as_os_str().to_owned();
+    part.push(format!(".part-{}", std::process::id()));
+    let unwritable = |error| format!("cannot write {}: {error}", path.display());
+    std::fs::write(&part, text).map_err(unwritable)?;
+    std::fs::rename(&part, path).map_err(unwritable)
+}
