@@ -221,7 +221,7 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
 
 /// Cells of a spectrogram along time and along frequency.
 const CELLS: (usize, usize) = (80, 48);
-/// What is so far below the highest level is as white as nothing (dB).
+/// Levels lower than this below the highest are white (dB).
 const RANGE: f64 = 60.0;
 /// Modes below this share of the largest amplitude do not widen a spectrogram (1).
 const SHOWN: f64 = 0.01;

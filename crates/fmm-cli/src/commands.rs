@@ -67,7 +67,7 @@ enum Command {
     },
     /// Print the completions for a shell
     Completions {
-        /// Which shell
+        /// The shell
         shell: Shell,
     },
     /// Write the manual pages into a folder
@@ -77,8 +77,8 @@ enum Command {
     },
 }
 
-/// Runs the program with `arguments`, of which the first is its name, and says what the shell is told: 0 for a result,
-/// 1 for input that is refused or a search that fails, 2 for wrong usage.
+/// Runs the program with `arguments`, of which the first is its name. The code for the shell is 0 for a result, 1 for
+/// input that is refused or a search that fails, and 2 for wrong usage.
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let rest: Vec<_> = arguments.iter().skip(1).map(|argument| argument.to_string_lossy()).collect();

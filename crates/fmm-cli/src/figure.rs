@@ -38,24 +38,24 @@ pub fn label(quantity: impl std::fmt::Display, unit: &str) -> String {
     if unit.contains(['/', ' ']) { format!("{quantity} / ({unit})") } else { format!("{quantity} / {unit}") }
 }
 
-/// What a layer of a panel shows; it decides colour and stroke.
+/// Content of a layer; it decides colour and stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// A measured curve.
     Measured,
-    /// More of the same, without a legend entry of its own.
+    /// Another measured curve, without an entry in the legend.
     MeasuredAgain,
     /// A fitted curve.
     Fitted,
     /// A fitted curve, mirrored or repeated: drawn without a legend entry of its own.
     FittedAgain,
-    /// What the fit leaves over.
+    /// Residuals of a fit.
     Residual,
-    /// More of the same, without a legend entry of its own.
+    /// More residuals, without an entry in the legend.
     ResidualAgain,
     /// A second model or a truth to compare with.
     Reference,
-    /// More of the same, without a legend entry of its own.
+    /// Another reference, without an entry in the legend.
     ReferenceAgain,
     /// Single measured points.
     Points,
@@ -176,7 +176,7 @@ impl Panel {
         self.layout_below(self.headroom(), STEPS)
     }
 
-    /// With this share of the data's range free above it, and at most so many steps of ticks along x.
+    /// Layout with this share of the data's range free above it, and at most this number of steps of ticks along x.
     fn layout_below(&self, headroom: f64, steps: f64) -> Layout {
         let corners = self.cells.iter().flat_map(|cells| [(cells.x.0, cells.y.0), (cells.x.1, cells.y.1)]);
         let points = self.layers.iter().flat_map(|layer| layer.points.iter().copied());

@@ -1,8 +1,8 @@
 //! Friction out of the record of a vibration: `fmm identify FILE` and `fmm compare FILE`.
 //!
 //! Reads a record of displacement, velocity or acceleration, prepares it, fits it by one law or by several, and gives
-//! out what was found, how sure it is, and what the record could not tell. What a channel measured is told by its unit,
-//! or by a word in its name, or by options; what would be a guess is refused.
+//! out findings, their uncertainties, and the limits of the record. The quantity of a channel follows from its unit, a
+//! word in its name, or options; a guess is refused.
 
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -71,7 +71,7 @@ fn measured(arguments: &Arguments, channel: &Column, quantity: Option<Quantity>)
     Ok(choice.read(file)?.record)
 }
 
-/// What drives the machine, if something does.
+/// Drive of the machine, if there is one.
 fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
     let (channel, quantity) = match (&arguments.force, &arguments.base) {
         (Some(channel), _) => (channel, Some(Quantity::Force)),
@@ -123,7 +123,7 @@ fn draw(folder: &Path, decay: &Experiment, comparison: &Comparison) -> Result<()
     Ok(())
 }
 
-/// What a program gets: the comparison, and the posterior beside it if there is one.
+/// Document for programs: the comparison, and the posterior if there is one.
 #[derive(Serialize)]
 struct Document<'a> {
     #[serde(flatten)]

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::files::create_folder;
 
-/// How a result is given out.
+/// Form of a result: text or JSON, with or without figures.
 #[derive(Debug, Args)]
 pub(crate) struct Output {
     /// Print one JSON document instead of text

@@ -20,7 +20,7 @@ pub(crate) struct Campaign {
     pub(crate) options: Vec<String>,
     /// The column that says which belong together.
     pub(crate) group: Option<String>,
-    /// What the manifest says for the record sheet.
+    /// Entries of the manifest for the record sheet.
     pub(crate) sheet: Option<Sheet>,
     pub(crate) entries: Vec<Entry>,
 }
@@ -31,11 +31,11 @@ pub(crate) struct Entry {
     pub(crate) file: PathBuf,
     /// Options of `fmm identify` for it alone.
     pub(crate) options: Vec<String>,
-    /// What describes it, by column.
+    /// Description by column.
     pub(crate) description: BTreeMap<String, String>,
 }
 
-/// What the list of a campaign is called in its folder.
+/// Name of the list in the folder of a campaign.
 const LIST: &str = "list.json";
 
 impl Campaign {
@@ -102,7 +102,7 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// What is told of the record of this index.
+    /// Options of the record of this index.
     pub(crate) fn record(&self, index: usize) -> Result<RecordOptions, Box<dyn Error>> {
         let entry = &self.entries[index];
         RecordOptions::of(self.options.iter().chain(&entry.options).cloned(), &entry.file)
@@ -118,7 +118,7 @@ impl Campaign {
         Err(format!("there is no column `{column}`; there are {}", known.join(", ")))
     }
 
-    /// What describes the records.
+    /// Columns that describe the records.
     pub(crate) fn columns(&self) -> Vec<&str> {
         self.entries.first().map_or_else(Vec::new, |entry| entry.description.keys().map(String::as_str).collect())
     }
@@ -163,7 +163,7 @@ pub(crate) struct RecordOptions {
 }
 
 impl RecordOptions {
-    /// What these `options` tell of the record in a `file`.
+    /// Parses the `options` of the record in a `file`.
     pub(super) fn of(options: impl Iterator<Item = String>, file: &Path) -> Result<Self, Box<dyn Error>> {
         let arguments = options.chain(["--".to_owned(), file.display().to_string()]);
         Ok(Self::try_parse_from(arguments).map_err(|error| {
@@ -202,9 +202,9 @@ fn refuse_misspelt(column: &str, command: &clap::Command) -> Result<(), String> 
     ))
 }
 
-/// Whether a column is called like an option but for case, spaces, a unit in brackets, or a slip: a letter too many,
-/// too few, wrong or exchanged with the next. Of four letters or fewer only a repeated letter is a slip, as a date is
-/// no rate.
+/// True if a column is called like an option but for case, spaces, a unit in brackets, or a slip: a letter too many,
+/// too few, wrong or exchanged with the next. Of four letters or fewer only a repeated letter is a slip: a date is no
+/// rate.
 fn is_meant(column: &str, option: &str) -> bool {
     let bare = column.split(['[', '(']).next().unwrap_or_default();
     let written: Vec<char> = bare.trim().to_lowercase().replace(['-', ' '], "_").chars().collect();
@@ -220,7 +220,7 @@ fn is_meant(column: &str, option: &str) -> bool {
     once(&written) == once(&option)
 }
 
-/// Whether two words are the same but for one letter, or for two that changed places.
+/// True if two words are equal but for one letter, or for two that changed places.
 fn is_one_slip(one: &[char], other: &[char]) -> bool {
     let begin = one.iter().zip(other).take_while(|(a, b)| a == b).count();
     let (one, other) = (&one[begin..], &other[begin..]);

@@ -15,7 +15,7 @@ use crate::input::Question;
 /// The usual law with its viscous part as damping of the machine.
 const OF_MACHINE: &str = "coulomb + linear";
 
-/// What came of it.
+/// Outcome of a joint fit.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Joint {
@@ -24,7 +24,7 @@ pub(crate) enum Joint {
     Refused(String),
 }
 
-/// What all records say as one.
+/// Findings of all records as one.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Together {
     pub(crate) law: String,

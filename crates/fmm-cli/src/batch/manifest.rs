@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::sheet::Sheet;
 use crate::files::{self, named};
 
-/// What a manifest says, whichever way it is written.
+/// Content of a manifest, from CSV or TOML.
 #[derive(Debug)]
 pub(super) struct Manifest {
     /// Among them `file`.
@@ -116,7 +116,7 @@ impl Manifest {
     }
 }
 
-/// Whether a manifest is TOML: by its ending or, without one that tells, by its first line that says something.
+/// True for a manifest in TOML: by its ending, or else by its first line that is not empty.
 fn is_toml(path: &Path, text: &str) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     match ending.as_deref() {
@@ -150,7 +150,7 @@ pub(super) fn cells(text: &str, table: &DeTable<'_>) -> Result<Vec<(String, Stri
     table.iter().map(cell).collect()
 }
 
-/// What is wrong with a part of the text, with its line.
+/// Fault of a part of the text, with its line.
 pub(super) fn at<T>(text: &str, part: &Spanned<T>, what: &str) -> String {
     let before = text.get(..part.span().start).unwrap_or(text);
     format!("line {}: {what}", before.matches('\n').count() + 1)
@@ -202,7 +202,7 @@ mod tests {
         assert!(!told("runs", "file,mass\na,1\n") && !told("runs", "file,note\na,b=c\n"));
     }
 
-    /// What is common goes into each record that does not say otherwise, and what a record leaves out is empty.
+    /// Common values hold for each record that does not say otherwise; others are empty.
     #[test]
     fn common_values_are_those_of_each_record() {
         let text = "group = \"operator\"\n[common]\nmass = 10.0\nunit = \"mm/s\"\n[[record]]\nfile = \"a.csv\"\n\

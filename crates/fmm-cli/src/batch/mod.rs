@@ -83,7 +83,7 @@ pub(crate) struct Merge {
     json: bool,
 }
 
-/// What is asked of all records together, on which no row depends.
+/// Requests to all records together, on which no row depends.
 #[derive(Debug, Args)]
 struct Asked {
     /// Fit all identified records together as one machine with one law, too; its time grows nearly as the cube of their
@@ -200,7 +200,7 @@ fn give_out(rows: &[Row], summary: &Summary, json: bool) -> Result<(), Box<dyn E
     Ok(())
 }
 
-/// Does all `tasks`, so many at a time, in their order, and shows how far it is; the first error ends it.
+/// Results of all `tasks` in their order, `jobs` at a time, with a bar of progress; the first error ends it.
 fn in_parallel<T: Send>(
     tasks: &[usize],
     jobs: usize,

@@ -41,7 +41,7 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
     whole_page(TITLE, &body)
 }
 
-/// What the records say together, in sentences.
+/// Consensus of the records, in sentences.
 fn statements(summary: &Summary) -> String {
     let mut statements = paragraphs(doubt_lines(summary));
     for quantity in &summary.quantities {
@@ -53,7 +53,7 @@ fn statements(summary: &Summary) -> String {
     statements
 }
 
-/// What the records say together, as a table.
+/// Consensus of the records, as a table.
 fn together(summary: &Summary) -> String {
     let row = |quantity: &Quantity| {
         let Quantity { mean, u, interval_95: [low, high], weighted_mean: [weighted, claimed], joint, .. } = *quantity;

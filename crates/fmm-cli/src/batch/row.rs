@@ -15,17 +15,17 @@ use sha2::{Digest, Sha256};
 use super::campaign::{Campaign, RecordOptions};
 use crate::files;
 
-/// What became of one record.
+/// Result of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Row {
     pub(crate) file: PathBuf,
-    /// What describes it, by column of the manifest.
+    /// Description by column of the manifest.
     pub(crate) description: BTreeMap<String, String>,
     #[serde(flatten)]
     pub(crate) outcome: Outcome,
 }
 
-/// What was found, or why nothing was.
+/// Findings, or the reason of a refusal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Outcome {
@@ -33,7 +33,7 @@ pub(crate) enum Outcome {
     Refused(String),
 }
 
-/// What was found in a record.
+/// Findings of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Found {
     /// The channel and what it was taken for.
@@ -41,7 +41,7 @@ pub(crate) struct Found {
     pub(crate) law: String,
     pub(crate) is_decided: bool,
     pub(crate) findings: Vec<Told>,
-    /// What was stated of machine and instrument with an uncertainty.
+    /// Declared inputs with an uncertainty.
     pub(crate) stated: Vec<Stated>,
     pub(crate) rms_residual: f64,
     pub(crate) unit: String,
@@ -65,7 +65,7 @@ pub(crate) struct Told {
     pub(crate) u: Option<f64>,
     /// Without it, infinitely many.
     pub(crate) degrees_of_freedom: Option<f64>,
-    /// What each source makes of u.
+    /// Contributions to u by source.
     pub(crate) contributions: Vec<Part>,
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct Told {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Part {
     pub(crate) source: String,
-    /// What it alone makes of the uncertainty, in the unit of the quantity.
+    /// Contribution to the uncertainty, in the unit of the quantity.
     pub(crate) u: f64,
 }
 
@@ -96,7 +96,7 @@ impl Row {
         Self { file: entry.file.clone(), description: entry.description.clone(), outcome }
     }
 
-    /// What was found, if anything was.
+    /// Findings of the record, unless it was refused.
     pub(crate) fn found(&self) -> Option<&Found> {
         match &self.outcome {
             Outcome::Found(found) => Some(found),
@@ -104,7 +104,7 @@ impl Row {
         }
     }
 
-    /// The rows with all but the first of those with the same samples refused: copies are no further evidence.
+    /// Refuses all but the first of rows with equal samples: copies are no further evidence.
     pub(crate) fn without_copies(mut rows: Vec<Self>) -> Vec<Self> {
         let mut first: BTreeMap<String, PathBuf> = BTreeMap::new();
         for row in &mut rows {
@@ -134,7 +134,7 @@ impl Row {
         files::write(&Self::path(folder, index), &text)
     }
 
-    /// What was found of a quantity of this name and unit.
+    /// Finding of this name and unit.
     pub(crate) fn told(&self, (name, unit): (&str, &str)) -> Option<&Told> {
         self.found()?.findings.iter().find(|told| told.name == name && told.unit == unit)
     }
@@ -157,7 +157,7 @@ pub(crate) fn quantities(rows: &[Row]) -> Vec<(&str, &str)> {
     quantities
 }
 
-/// What the search finds in one record.
+/// Identifies one record.
 fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     let (input, decay) = record.prepared()?;
     let candidates = record.question.candidates()?;
@@ -200,7 +200,7 @@ fn fingerprint(record: &Record) -> String {
     digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
-/// What was found of the machine.
+/// Findings of the machine.
 pub(super) fn told(found: &Identification) -> Vec<Told> {
     let is_of_machine =
         |finding: &&Finding| !finding.is_of_record() && finding.origin() != Origin::Fitted(EstimateStatus::Fixed);

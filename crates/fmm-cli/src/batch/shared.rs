@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::row::{Row, Stated, Told};
 
-/// What an input that records share makes of the uncertainty of a consensus.
+/// Contribution of an input that records share to the uncertainty of a consensus.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct SharedPart {
     pub(crate) input: Stated,
@@ -69,7 +69,7 @@ impl Parted {
         Consensus::of(&self.results, effects)?.with_shared(&self.contributions)
     }
 
-    /// What each shared input makes of the uncertainty of this consensus of the results.
+    /// Contribution of each shared input to the uncertainty of a consensus.
     pub(super) fn shared(&self, consensus: &Consensus) -> Vec<SharedPart> {
         let part =
             |((input, records), u): (&(Stated, usize), f64)| SharedPart { input: input.clone(), records: *records, u };

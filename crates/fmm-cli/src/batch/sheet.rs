@@ -15,7 +15,7 @@ use super::manifest::{at, cells};
 use super::row::{Row, in_unit, quantities};
 use crate::figure::ends;
 
-/// What a manifest says under `[sheet]`.
+/// Entries of a manifest under `[sheet]`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sheet {
     /// By key of [`FIELDS`].
@@ -66,7 +66,7 @@ pub(crate) struct Field {
     pub(crate) name: String,
     /// `None` where nothing is known.
     pub(crate) value: Option<String>,
-    /// Whether the program knows it from the records.
+    /// True if the value follows from the records.
     pub(crate) is_found: bool,
 }
 
@@ -118,7 +118,7 @@ impl Sheet {
     }
 }
 
-/// What the records say of the field of this key.
+/// Value of a field that follows from the records.
 fn found(key: &str, rows: &[Row]) -> Option<String> {
     let found = || rows.iter().filter_map(Row::found);
     match key {

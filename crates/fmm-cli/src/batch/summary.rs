@@ -51,7 +51,7 @@ pub(crate) struct Quantity {
     pub(crate) mean: f64,
     pub(crate) u: f64,
     pub(crate) interval_95: [f64; 2],
-    /// What inputs that records share make of u, together and each.
+    /// Contributions to u of inputs that records share, together and each.
     pub(crate) shared_u: f64,
     pub(crate) shared: Vec<SharedPart>,
     /// Standard deviation between the records beyond their uncertainties.
@@ -111,7 +111,7 @@ impl Summary {
     }
 }
 
-/// What the joint fit says of a quantity. Forces that belong to one load are none of the records' under others.
+/// Value of a quantity by the joint fit. Forces at one load are not those of records at others.
 fn by_joint(together: &Together, (name, unit): (&str, &str)) -> Option<(f64, Option<f64>)> {
     let [coefficient, levels @ ..] = FRICTION;
     let is_level = !name.ends_with(coefficient) && levels.iter().any(|level| name.ends_with(level));

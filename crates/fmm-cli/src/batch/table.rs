@@ -80,7 +80,7 @@ pub(super) fn statement(quantity: &Quantity) -> String {
     )
 }
 
-/// What of u the records share, if anything.
+/// Shared part of u, if there is one.
 fn shared(quantity: &Quantity) -> String {
     if quantity.shared.is_empty() {
         return String::new();
@@ -96,7 +96,7 @@ fn named_value(told: &Told) -> String {
     format!("{} = {}", told.name, in_unit(Rounded::new(told.value, told.u), &told.unit))
 }
 
-/// What a joint fit said, in sentences.
+/// Joint fit in sentences.
 pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     let together = match &summary.joint {
         None => return Vec::new(),
@@ -136,7 +136,7 @@ pub(super) fn doubt_lines(summary: &Summary) -> impl Iterator<Item = String> {
         .map(|record| format!("doubted, but counted below: {}: {}", record.file, record.doubts.join("; ")))
 }
 
-/// What nobody said of the record sheet.
+/// Fields of the record sheet without a value.
 pub(super) fn sheet_line(fields: &[Field]) -> String {
     let missing: Vec<String> = fields
         .iter()

@@ -39,28 +39,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(crate) const HELP: &str = "\
-The file:
-  [[input]]                       one for each quantity
-  name = \"mass\"                   letters, digits, underscores
-  unit = \"kg\"
-  value = 10.391                  with u = 0.005 (a standard uncertainty) and, if it is known by an estimate,
-                                  degrees_of_freedom = 9
-  limits = [10.38, 10.40]         instead of value and u, with distribution = \"rectangular\" (unless given), \"triangular\",
-                                  or \"arc sine\"
-  observations = [10.39, 10.40]   instead of value and u: their mean
-
-  [[correlation]]                 if two inputs are correlated
-  between = [\"mass\", \"frequency\"]
-  coefficient = 0.3
-
-  [[result]]                      one or more
-  name = \"stiffness\"
-  unit = \"N/m\"
-  formula = \"mass * (2 * pi * frequency)^2\"
-
-A formula has + - * / ^ and parentheses, pi, sqrt exp ln log10 sin cos tan asin acos atan sinh cosh tanh abs, and
-atan2(y, x); angles are in radians.";
+pub(crate) const HELP: &str = include_str!("help.txt");
 
 /// Significant digits of u to which the two intervals must agree.
 const DIGITS: u32 = 2;
@@ -72,7 +51,7 @@ struct Answer {
     budget: Budget,
     /// None where u is zero or its degrees of freedom are not defined.
     statement: Option<Statement>,
-    /// What the trials say, if the result has a standard deviation.
+    /// Result of the trials, if it has a standard deviation.
     trials: Option<TrialStatement>,
     /// Why it has none, such as an input that is known by two observations.
     no_deviation: Option<String>,
@@ -263,7 +242,7 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         assert!(text(&answers).contains("to two, state theirs"));
     }
 
-    /// As JSON; u² = u_a² + u_b² − 2 r u_a u_b, with u_a = 0.3 and u_b = 0.4.
+    /// From JSON: u² = u_a² + u_b² − 2 r u_a u_b, with u_a = 0.3 and u_b = 0.4.
     #[test]
     fn correlated_inputs_and_observations_are_read() {
         let file = r#"{

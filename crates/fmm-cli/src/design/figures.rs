@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::Answer;
-use super::file::unit;
+use super::candidates::unit;
 use crate::figure::{Layer, Panel, Role, label, stacked};
 
-/// Uncertainties so many times the smallest are left out of a picture.
+/// Uncertainties above this multiple of the smallest are left out of a picture (1).
 const IN_SIGHT: f64 = 20.0;
 
 /// One panel for each number of which the tests have several: every test, the best at each value, and those chosen.

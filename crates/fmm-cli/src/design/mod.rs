@@ -3,6 +3,7 @@
 //! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of
 //! them tells most, and what each of that set tells that the others do not.
 
+mod candidates;
 mod figures;
 mod file;
 
@@ -28,41 +29,7 @@ pub(crate) struct Arguments {
     output: Output,
 }
 
-pub(crate) const HELP: &str = "\
-The file (SI units; a number or a list of numbers where it says [...], and { value = 14, u = 0.02 } for a number with its
-standard uncertainty):
-  [machine]                       two of mass, stiffness and frequency, or the frequency alone
-  mass = { value = 10.391, u = 0.005 }
-  stiffness = 1982
-  normal_load = 14                of which the loads of tests are multiples; its error is one for all tests
-  damping = 0.275                 if it is known and no term of the law
-
-  [guess]
-  law = \"berger + quadratic\"      a law with terms beside it, as for `fmm identify --law`
-  values = { mu0 = 0.228, mu1 = 0.261, alpha = 2.852, quadratic_damping = 0.437 }
-  within = 0.2                    relative standard uncertainty of the values, if the choice is to be robust
-
-  [sensor]
-  quantity = \"velocity\"           or displacement, acceleration
-  noise = 1e-4                    [...]
-  gain_u = 0.003                  relative; one error for all tests by the same sensor
-
-  [[candidates]]                  one or more, each a grid of tests
-  release = [0.008, 0.016]        [...] or blow = (N) with pulse = (s), or force = (N) or base = (m/s²), amplitudes of a sine with
-                                  frequency = (Hz)
-  normal_load = [3.5, 7, 14]      [...] if it is not that of the machine; tests with equal loads share its error
-  added_mass = [0, 2]             [...], added_stiffness = [...]
-  rate = 1000                     [...]
-  duration = 2                    [...]
-  contact = false                 for tests with the contact lifted
-  offset = false                  if the offset of the record is known
-  cost = 5                        of each test
-  sensor = { quantity = \"displacement\", noise = 1e-5 }
-
-  [choose]
-  aim = \"mu\"                      a finding, or \"determinant\" or \"mean variance\" of all that tests share
-  tests = 3                       or budget = 60
-  robust = \"mean\"                 or \"worst\", over draws = 24 within the guess";
+pub(crate) const HELP: &str = include_str!("help.txt");
 
 /// One test.
 #[derive(Serialize)]
@@ -86,7 +53,7 @@ struct Set {
     findings: BTreeMap<String, Finding>,
     stays_free: Vec<String>,
     hardly_told_apart: Vec<(String, String, f64)>,
-    /// What each tells that the others do not.
+    /// Information of each test that the others do not have.
     told: Vec<(usize, String)>,
     #[serde(skip)]
     text: String,
@@ -100,7 +67,7 @@ struct Answer {
     single: Option<usize>,
     for_its_cost: Option<usize>,
     best: Set,
-    /// As many of the single best.
+    /// u of the same number of repeats of the single best test.
     repeats: Option<f64>,
 }
 

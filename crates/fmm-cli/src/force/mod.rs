@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     print(out.trim_end())
 }
 
-/// What loops and onsets say, in lines.
+/// Loops and onsets in lines of text.
 fn without_a_law(record: &ForceRecord) -> Vec<String> {
     let (force, position) = (record.force_unit(), record.position_unit());
     let mut lines = Vec::new();
@@ -193,7 +193,7 @@ fn onsets(record: &ForceRecord) -> Value {
     record.onsets().iter().map(onset).collect()
 }
 
-/// How well the model predicts the record of a `file` to which it was not fitted.
+/// Prediction error of the model on the record of a `file` to which it was not fitted.
 fn validation(found: &ForceIdentification, file: &Path, record: &ForceRecord) -> Result<Validation, String> {
     found.validate_on(record).map_err(named(file))
 }

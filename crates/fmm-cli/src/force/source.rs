@@ -9,7 +9,7 @@ use fmm_record::{Column, DataFile, Label, Quantity, Reader, RecordError, Written
 
 use crate::files::named;
 
-/// Which columns of a table are what.
+/// Columns of a table by their meaning.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Source {
     /// The column of times (s), by name or number; found by its name unless given
@@ -46,16 +46,16 @@ pub(crate) struct Source {
     rest_speed: Option<f64>,
 }
 
-/// What a column is named as.
+/// Meaning of a column.
 struct Role {
     option: &'static str,
     quantity: Quantity,
-    /// What its unit has to measure, and the SI units that do.
+    /// Required dimension in words, and its SI units.
     needed: &'static str,
     units: &'static [&'static str],
 }
 
-// Volts, amperes and counts are of anything: friction can be told in them.
+// Volts, amperes and counts can stand for any quantity, and friction can be given in them.
 const POSITION: Role = Role {
     option: "--position",
     quantity: Quantity::Displacement,

@@ -14,9 +14,9 @@ use super::trials::Trial;
 
 /// Samples before and after the highest one over which the force is integrated, if the pulse itself is not longer.
 const AROUND: (usize, usize) = (40, 60);
-/// How far (dB) the force may have fallen from its best lines for a line to be believed (ISO 7626-5 asks for 10 to 20).
+/// Largest fall of the force below its best line for a line to count (dB); ISO 7626-5 asks for 10 to 20.
 const USABLE: f64 = 20.0;
-/// How far (dB) a resonance stands out of its surroundings at least.
+/// Least height of a resonance above its surroundings (dB).
 const PROMINENCE: f64 = 20.0;
 
 /// Weights on the samples of each trial.
@@ -125,7 +125,7 @@ fn quiet(peak: usize, length: usize) -> Range<usize> {
     if peak < length / 2 { length - fifth..length } else { 0..fifth }
 }
 
-/// What makes a trial doubtful.
+/// Adds the faults of a trial to the warnings.
 fn doubts(trial: &Trial, pulse: &Pulse, window: Window, warnings: &mut Vec<String>) {
     let name = &trial.name;
     warnings.extend(trial.warnings.iter().map(|warning| format!("{name}: {warning}")));

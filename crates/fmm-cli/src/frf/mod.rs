@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     /// The channel with the response
     #[arg(long, value_name = "NAME|INDEX")]
     response: Option<String>,
-    /// What the response is, if neither the file nor the name of the channel says it
+    /// Quantity of the response, if neither the file nor the name of the channel says it
     #[arg(long, value_enum)]
     quantity: Option<Measured>,
     /// Factor that turns the force into N; needed if the file states another unit
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     /// Weights on the samples
     #[arg(long, value_enum, default_value = "none")]
     window: Window,
-    /// What an exponential window has fallen to at the end of the record
+    /// Value of an exponential window at the end of the record
     #[arg(long, value_name = "FRACTION", default_value_t = 0.01)]
     exponential_end: f64,
     #[command(flatten)]

@@ -10,17 +10,17 @@ pub(crate) struct Trial {
     pub(crate) name: String,
     pub(crate) force: Record,
     pub(crate) response: Record,
-    /// Which channels they are and how the rate was found.
+    /// Names of the channels, and the origin of the sampling rate.
     pub(crate) origin: String,
-    /// What was not as it should be in the file.
+    /// Faults of the file.
     pub(crate) warnings: Vec<String>,
 }
 
-/// Which channels to read, and in which unit.
+/// Channels to read, and their units.
 pub(crate) struct Choice<'a> {
     pub(crate) force: Option<&'a str>,
     pub(crate) response: Option<&'a str>,
-    /// What the response measured; without it, what the file or the name of the channel says.
+    /// Quantity of the response; without it, that of the file or of the channel's name.
     pub(crate) quantity: Option<Quantity>,
     /// From what the file holds to SI units; without a factor it must be in these.
     pub(crate) force_scale: Option<f64>,
@@ -109,12 +109,12 @@ impl Choice<'_> {
     }
 }
 
-/// Whether a response can be such a quantity.
+/// True for a quantity that a response can have.
 fn is_of_motion(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
 }
 
-/// What reads a channel, as names in Universal Files need not differ.
+/// Number of a channel, as names in Universal Files need not differ.
 fn key(channel: &Channel) -> Column {
     Column::Index(channel.position)
 }

@@ -19,7 +19,7 @@ pub(crate) use question::{Held, Question};
 use source::BUNDLED;
 pub(crate) use source::{Choice, Input};
 
-/// Which file, which channel of it, and what that measured.
+/// File, channel, and measured quantity.
 #[derive(Debug, Args)]
 pub(crate) struct Given {
     /// The record, in a format that `fmm formats` lists; without it, the bundled record of a bicycle fork
@@ -35,7 +35,7 @@ pub(crate) struct Given {
     /// The sampling rate, if there is no time channel
     #[arg(long, value_name = "HZ")]
     pub(crate) rate: Option<f64>,
-    /// What the channel measures; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
+    /// Quantity of the channel; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
     #[arg(long, value_enum)]
     pub(crate) quantity: Option<Measured>,
     /// Factor that turns the numbers of the channel into --unit; both count instead of a unit in the file. A unit in
@@ -65,10 +65,10 @@ pub(crate) enum Measured {
     Acceleration,
 }
 
-/// Which mode of a decay is meant.
+/// Chosen mode of a decay.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ModeWanted {
-    /// The so many-th strongest, from 1 on.
+    /// Place in the order of strength, from 1 on.
     Number(usize),
     /// The one nearest to this frequency (Hz), if it is within a fifth of it.
     Near(f64),

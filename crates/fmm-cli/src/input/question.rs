@@ -24,7 +24,7 @@ pub(crate) struct Question {
     /// without it, as many as the record asks for. An unknown name is answered with the list of laws
     #[arg(long, value_name = "NAME,..|all", value_delimiter = ',')]
     pub(crate) law: Vec<String>,
-    /// Begin no further law after so many seconds
+    /// Begin no further law after this time
     #[arg(long, value_name = "S", conflicts_with = "law")]
     time_limit: Option<f64>,
     /// Hold a fitted parameter of the laws at a value, as in exponent=2; of one law alone as in stribeck.exponent=2
@@ -177,8 +177,7 @@ impl Question {
         self.normal_load
     }
 
-    /// What is stated of the machine with an uncertainty: source of uncertainty, value and standard uncertainty in
-    /// their units.
+    /// Inputs of the machine with an uncertainty: source, value and standard uncertainty in their units.
     pub(crate) fn stated(&self) -> impl Iterator<Item = (Source, f64, f64)> {
         let stated = [
             (Source::Mass, self.mass, self.mass_u),
@@ -189,8 +188,8 @@ impl Question {
         stated.into_iter().filter_map(|(source, value, u)| Some((source, value?, u))).filter(|(_, _, u)| *u > 0.0)
     }
 
-    /// What is asked of several records that are one problem, each with its name: the question of the first, and the
-    /// normal load of each over that of the first. Refused where they state more than one machine, which no fit has.
+    /// Question to several records as one problem: that of the first record, and the normal load of each over that of
+    /// the first. Refused where they state more than one machine.
     pub(crate) fn together(questions: &[(Self, String)]) -> Result<(Self, Vec<f64>), String> {
         let (first, name) = questions.first().ok_or("there is no record")?;
         let mut factors = Vec::with_capacity(questions.len());
@@ -237,8 +236,8 @@ impl Question {
         Ok((Self { normal_load_u, ..first.clone() }, factors))
     }
 
-    /// What one record or several of one machine say to the `candidates`, or to a search if there are none, while
-    /// `show` sees each trial step.
+    /// Comparison of the `candidates`, or of a search if there are none, by records of one machine; `show` sees each
+    /// trial step.
     pub(crate) fn answer(
         &self,
         decays: &[Experiment],
@@ -271,7 +270,7 @@ impl Question {
     }
 }
 
-/// What is known of the machine by the option of this name.
+/// Value of an option with its uncertainty.
 fn known(option: &str, value: f64, uncertainty: f64) -> Result<Known, String> {
     Known::new(value, uncertainty).map_err(|error| format!("{option}: {error}"))
 }

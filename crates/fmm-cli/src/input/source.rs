@@ -11,7 +11,7 @@ pub(crate) struct Input {
     pub(crate) record: Record,
     /// The file, the channel, what it was taken for, and how its sampling rate was found.
     pub(crate) origin: String,
-    /// What was not as it should be in the file.
+    /// Faults of the file.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -24,7 +24,7 @@ impl Input {
     }
 }
 
-/// What the user says of the file; the rest is found in it.
+/// Choices of the user; the rest is found in the file.
 #[derive(Default)]
 pub(crate) struct Choice {
     pub(crate) channel: Option<Column>,
@@ -36,7 +36,7 @@ pub(crate) struct Choice {
     pub(crate) to: Option<f64>,
     /// Quantity, unit and scale of the channel.
     pub(crate) request: Request,
-    /// Whether the channel is what drives the machine.
+    /// True for the channel that drives the machine.
     pub(crate) is_drive: bool,
 }
 
@@ -65,7 +65,7 @@ impl Choice {
         self.input(path, &Label::from(&reading), &reading, warnings)
     }
 
-    /// That the file states another sampling rate than the user.
+    /// Warning of a file that states another sampling rate than the user.
     fn other_rate(&self, path: &Path, reading: &Reading) -> Option<String> {
         /// Relative difference that counts as one.
         const OTHER: f64 = 1e-3;

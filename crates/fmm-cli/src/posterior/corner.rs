@@ -62,7 +62,7 @@ fn density(marginal: &Marginal) -> Vec<(f64, f64)> {
     std::iter::once((range.0, 0.0)).chain(steps).chain([(range.1, 0.0)]).collect()
 }
 
-/// How many draws lie where, of the fullest cell.
+/// Draws in each cell, relative to the fullest cell.
 fn pair(x: &Marginal, y: &Marginal) -> Cells {
     let ranges = [range(x), range(y)];
     let mut rows = vec![vec![0.0; CELLS]; CELLS];

@@ -26,12 +26,12 @@ impl Posterior {
         Ok(Self(preferred.posterior(std::slice::from_ref(decay), &preferred.sampler())?))
     }
 
-    /// What a terminal shows.
+    /// Text for a terminal.
     pub(crate) fn text(&self) -> String {
         self.0.to_string()
     }
 
-    /// What the page says below the heading.
+    /// Part of the page below the heading.
     pub(crate) fn html(&self) -> String {
         let posterior = &self.0;
         let headings =

@@ -1,4 +1,4 @@
-//! What stands for a posterior in builds without one.
+//! Stand-in for a posterior in builds without one.
 
 use std::error::Error;
 

@@ -8,7 +8,7 @@ use crate::page::{optional_cell, row_heading, table, text_cell, words};
 /// A share below this is not worth a number (1).
 const LITTLE: f64 = 5e-4;
 
-/// What each source contributes to the findings that all records share.
+/// Contribution of each source to the findings that all records share.
 pub(super) fn budget(preferred: &Identification) -> String {
     let budgets: Vec<(&Finding, Vec<Contribution>)> = preferred
         .findings()

@@ -18,7 +18,7 @@ pub(crate) struct Found {
     pub(crate) posterior: Option<Posterior>,
 }
 
-/// What is drawn of a fit.
+/// Pictures of a fit.
 pub(crate) struct Pictures {
     /// The record with the preferred fit, and what is left.
     pub(crate) fit: Vec<Panel>,

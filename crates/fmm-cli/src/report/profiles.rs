@@ -83,7 +83,7 @@ fn profile_text(profile: &Profile) -> String {
     }
 }
 
-/// What the profile says of a quantity in words.
+/// Result of a profile in words.
 fn misleads(profile: &Profile) -> String {
     let side = |end: ProfileEnd, side: &str| match end {
         ProfileEnd::At(_) => None,

@@ -22,7 +22,7 @@ pub(crate) struct Entry {
     /// Its parameters.
     pub(crate) slots: fn() -> Vec<Slot>,
     make: fn(Given) -> Made,
-    /// Whether it is a law of the sliding speed alone, which can be smoothed in it.
+    /// True for a law of the sliding speed alone, which can be smoothed.
     is_of_speed: bool,
 }
 
@@ -33,7 +33,7 @@ const OF_ACCELERATION: [&str; 2] = ["acceleration_coulomb", "exponential_pair"];
 struct AllEntries;
 
 impl FamilyVisitor for AllEntries {
-    /// None for families of so many elements: a scenario lists its elements.
+    /// None for families of elements by their number: a scenario lists its elements.
     type Output = Option<Entry>;
 
     fn visit<F: LawFamily>(&mut self) -> Option<Entry> {

@@ -8,7 +8,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Entries(pub(crate) Vec<(String, Field)>);
 
-/// What a key can hold.
+/// Value of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Field {
     /// A number.

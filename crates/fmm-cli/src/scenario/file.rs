@@ -82,7 +82,7 @@ struct Line {
     slope: f64,
 }
 
-/// How the restoring force depends on the position.
+/// Restoring force over the position.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 enum Spring {
@@ -145,7 +145,7 @@ impl Machine {
     }
 }
 
-/// What acts from outside.
+/// Action from outside.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub(crate) enum Drive {
@@ -246,7 +246,7 @@ pub(crate) struct Initial {
 pub(crate) enum Output {
     /// At these times (s).
     Times(Vec<f64>),
-    /// As often (1/s), from 0 to the duration.
+    /// At this rate (1/s), from 0 to the duration.
     Rate(f64),
 }
 

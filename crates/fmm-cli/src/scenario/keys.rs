@@ -2,7 +2,7 @@
 
 use fmm_friction::LawParameter;
 
-/// What a law reads under a parameter.
+/// Form of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// A number.
@@ -97,7 +97,7 @@ impl Slot {
         keys
     }
 
-    /// Whether `key` means this parameter, in upper or lower case.
+    /// True if `key` means this parameter, in upper or lower case.
     pub(crate) fn is(&self, key: &str) -> bool {
         self.keys().contains(&ascii(key))
     }

@@ -21,7 +21,7 @@ pub(crate) struct Motion {
 pub(crate) struct Incident {
     /// s.
     pub(crate) t: f64,
-    /// What happened.
+    /// Kind of the event.
     pub(crate) kind: String,
     /// m.
     pub(crate) x: f64,
@@ -32,7 +32,7 @@ pub(crate) struct Incident {
     /// `acc`, `const` or `dec` from here on, under a law that depends on the acceleration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) phase: Option<&'static str>,
-    /// How far the load is beyond the static level, relative to it.
+    /// Excess of the load over the static level, relative to it.
     #[serde(skip)]
     pub(crate) margin: f64,
     /// N.

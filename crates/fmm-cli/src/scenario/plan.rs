@@ -19,7 +19,7 @@ const USUAL_SAMPLES: usize = 1000;
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
     pub(crate) sampling: Sampling,
-    /// How many samples are given out.
+    /// Number of samples that are given out.
     pub(crate) kept: usize,
     /// The last time at which an event is given out (s).
     pub(crate) end: f64,

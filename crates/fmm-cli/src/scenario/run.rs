@@ -83,12 +83,12 @@ impl Simulation {
         Ok(Motion::new(&trajectory, plan, &self.setting))
     }
 
-    /// What the scenario calls itself.
+    /// Title of the scenario.
     pub(crate) fn title(&self) -> &str {
         &self.title
     }
 
-    /// What the scenario says of itself.
+    /// Description of the scenario.
     pub(crate) fn description(&self) -> &str {
         &self.description
     }

@@ -43,30 +43,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 /// Events printed at most; the document of `--json` has them all.
 const MOST_EVENTS: usize = 60;
 
-/// What a scenario holds.
-pub(crate) const HELP: &str = r#"A scenario, all SI; only oscillator and an end (duration or output times) must be there:
-
-  { "title": "…", "description": "…",
-    "oscillator": {"mass": 10.391, "stiffness": 1982.0, "damping": {"linear": 0.2005, "quadratic": 0.437}},
-    "law": {"berger": {"mu0": 0.228, "mu1": 0.261, "alpha": 2.852}}, "normal_load": 8.604351,
-    "excitation": [{"half_sine": {"peak": 1000.0, "duration": 2.2e-3}}, {"belt": {"velocity": 0.2}}],
-    "initial": {"position": 0.0, "velocity": 0.196}, "duration": 1.6,
-    "output": {"rate": 1000.0}, "engine": "auto" }
-
-  oscillator   mass, stiffness, damping, restoring
-  damping      linear, quadratic, cubic, power {coefficient, exponent}, which add up; instead of linear and quadratic
-               peak_velocity_line {intercept, slope}; default none
-  restoring    "linear" (default), {"sine": {"length": 1.0}}, {"polynomial": {"cubic": 1.5, "quintic": 0.0}},
-               {"stop": {"distance": 0.02, "ratio": 5.0}} (5 times as stiff beyond 20 mm) or {"gap": {"gap": 0.001}}
-  law          an object with one key, see `fmm laws`; default no friction
-  normal_load  default 1, with which a coefficient is a force
-  excitation   a list of: sampled_force {interval, values}, half_sine {peak, duration}, constant {force}, ramp {rate},
-               each with an optional delay; harmonic and base {amplitude, angular_frequency, phase}; belt {velocity}
-  initial      position, velocity; default 0
-  duration     default the last output time
-  output       {"times": […]} or {"rate": …}; default 1000 samples
-  engine       auto (default), exact, runge_kutta, bristle, thesis, moreau
-  tolerance    relative, for runge_kutta and bristle"#;
+/// Fields of a scenario.
+pub(crate) const HELP: &str = include_str!("help.txt");
 
 /// A motion for the eye.
 struct Report<'a> {
