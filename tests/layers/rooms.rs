@@ -8,8 +8,8 @@ use super::source::{code, crates, files, first_names, text};
 const ROOMS: &[(&str, &str)] = &[
     (
         "fmm-cli",
-        "figure input output page backbone budget force formats frf batch pictures posterior report identify scenario \
-         design laws simulate commands",
+        "figure files input output page backbone budget force frf batch posterior report identify scenario design \
+         lists simulate commands",
     ),
     (
         "fmm-fit",
