@@ -208,7 +208,7 @@ impl Candidates {
         let test =
             match kinds[..] {
                 [("release", position)] => PlannedTest::release(position, seen_by, rate, duration)?,
-                [("blow", peak)] => PlannedTest::blow(peak, needed("pulse", "blow")?, seen_by, rate, duration)?,
+                [("blow", peak)] => PlannedTest::impact(peak, needed("pulse", "blow")?, seen_by, rate, duration)?,
                 [("force", amplitude)] => {
                     PlannedTest::pushed(&harmonic(amplitude, "force", Quantity::Force, "N")?, 0.0, seen_by, rate)?
                 }

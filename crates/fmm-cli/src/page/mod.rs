@@ -54,13 +54,13 @@ pub(crate) fn row_heading(name: &str) -> String {
 
 /// Texts as a list of bullets, and nothing without any.
 pub(crate) fn bullets(texts: impl IntoIterator<Item = String>) -> String {
-    let items: String = texts.into_iter().map(|text| format!("<li>{}</li>\n", escaped(&text))).collect();
+    let items = texts.into_iter().map(|text| format!("<li>{}</li>\n", escaped(&text))).collect::<Vec<_>>().concat();
     if items.is_empty() { items } else { format!("<ul>\n{items}</ul>\n") }
 }
 
 /// Texts as paragraphs.
 pub(crate) fn paragraphs(texts: impl IntoIterator<Item = String>) -> String {
-    texts.into_iter().map(|text| format!("<p>{}</p>\n", escaped(&text))).collect()
+    texts.into_iter().map(|text| format!("<p>{}</p>\n", escaped(&text))).collect::<Vec<_>>().concat()
 }
 
 /// A part of a page under a heading.

@@ -30,12 +30,15 @@ impl Setting {
 /// The motion by the chosen engine; none if it does not take the law.
 type Simulate = dyn Fn(&Setting, Choice, &Sampling) -> Result<Option<Trajectory>, SimulationError>;
 
+/// Friction coefficient (1) by velocity (m/s), internal states, and whether the speed falls.
+type Coefficient = dyn Fn(f64, &[f64], bool) -> f64;
+
 /// A law of any type.
 pub(crate) struct Contact {
     /// The engines that take the law.
     pub(crate) engines: &'static [EngineName],
     pub(crate) simulate: Box<Simulate>,
-    coefficient: Box<dyn Fn(f64, &[f64], bool) -> f64>,
+    coefficient: Box<Coefficient>,
     /// The law as one of the sliding speed alone, if it is one.
     pub(crate) sliding: Option<AnySliding>,
 }
