@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use fmm_identify::{ForceModel, ForceRecord, compare_force};
+use fmm_identify::{Candidate, ForceRecord, Machine, compare};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // A joint with friction of 4 Nm and damping of 0.3 Nm s/rad, moved to and fro.
@@ -15,9 +15,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let torques: Vec<f64> = velocities.iter().enumerate().map(|(i, v)| 4.0 * v.signum() + 0.3 * v + noise(i)).collect();
     let record = ForceRecord::of_positions(&times, &positions, &torques)?.in_units("rad", "N m");
 
-    let models = ["viscous", "coulomb", "coulomb + linear"].map(ForceModel::named);
+    let models = ["viscous", "coulomb", "coulomb + linear"].map(Candidate::named);
     let models = models.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let compared = compare_force(&models, &[record])?;
+    let compared = compare(&Machine::per_unit_mass(), &[record], &models)?;
     println!("{}\n\n{compared}", compared.preferred());
     Ok(())
 }

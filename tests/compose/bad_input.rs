@@ -177,7 +177,10 @@ fn records_that_do_not_belong_together() {
     let volts = Experiment::ring_down(&fork(), &Preparation::default()).unwrap();
     let error = identify::<Coulomb>(&Machine::per_unit_mass(), &[velocity, volts]).unwrap_err();
     assert!(matches!(error, IdentifyError::WrongRecord { .. }), "{error}");
-    assert!(matches!(identify::<Coulomb>(&Machine::per_unit_mass(), &[]), Err(IdentifyError::Missing { .. })));
+    assert!(matches!(
+        identify::<Coulomb>(&Machine::per_unit_mass(), &[] as &[Experiment]),
+        Err(IdentifyError::Missing { .. })
+    ));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A measured band brake: what its two bands hold is the force, at two tensions alike.
 
-use fmm_identify::{ForceModel, ForceRecord, identify_force};
+use fmm_identify::{Candidate, ForceRecord, Machine, compare};
 use fmm_record::Column;
 
 fn record(name: &str) -> ForceRecord {
@@ -21,12 +21,15 @@ fn record(name: &str) -> ForceRecord {
 #[test]
 fn one_law_says_both_tensions() {
     let (tight, slack) = (record("damper_1Hz_36lb_1amplitude.csv"), record("damper_1Hz_30lb_1amplitude.csv"));
-    let fitted = |name: &str| identify_force(&ForceModel::named(name).unwrap(), std::slice::from_ref(&tight)).unwrap();
-    let by_motion = fitted("coulomb + linear + asymmetry");
-    let by_bands = fitted("coulomb + linear + zero + inertia + channels");
-    let share = |record: &ForceRecord| by_bands.validate_on(record).unwrap().share().unwrap();
+    let models = ["coulomb + linear + asymmetry", "coulomb + linear + zero + inertia + channels"];
+    let models = models.map(|name| Candidate::named(name).unwrap());
+    let compared = compare(&Machine::per_unit_mass(), std::slice::from_ref(&tight), &models).unwrap();
+    let [by_motion, by_bands] = compared.identifications() else { panic!("{compared}") };
+    assert_eq!(compared.preferred().law(), by_bands.law(), "{compared}");
+    assert!(compared.is_decided() && compared.p_values()[0] < 1e-6, "{compared}");
+    let share = |record: &ForceRecord| by_bands.validate(record).unwrap().share().unwrap();
     println!("{by_bands}");
-    assert!(by_motion.validate_on(&tight).unwrap().share().unwrap() > 0.15);
+    assert!(by_motion.validate(&tight).unwrap().share().unwrap() > 0.15);
     assert!(share(&tight) < 0.07 && share(&slack) < 0.085, "{} {}", share(&tight), share(&slack));
     // Each band holds about twice what is measured in it.
     for (name, sign) in [("share_of_band_1", -1.0), ("share_of_band_2", 1.0)] {

@@ -15,7 +15,6 @@ const UNUSED: &[&str] = &[
     "fmm_frf::friction_force_of_slope",
     "fmm_frf::impulse_of_record",
     "fmm_identify::Extension",
-    "fmm_identify::ForceComparison",
     "fmm_identify::ImpactSummary",
     "fmm_identify::NestedTest",
     "fmm_identify::PredictiveCheck",

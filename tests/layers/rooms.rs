@@ -20,7 +20,7 @@ const ROOMS: &[(&str, &str)] = &[
     (
         "fmm-identify",
         "error finding law linear_algebra machine candidate threads warning experiment quantities problem residuals \
-         fit force identification design judgement posterior report",
+         fit identification design judgement posterior report",
     ),
     ("fmm-record", "error numerics sampling units record calculus examination files"),
     (

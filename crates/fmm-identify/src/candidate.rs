@@ -1,4 +1,4 @@
-//! A law that takes part in a comparison.
+//! Law with its terms, chosen by name at run time.
 
 use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
 
@@ -37,7 +37,20 @@ impl Candidate {
         Self { terms, ..self }
     }
 
-    /// The same law with the fitted parameter called `name` held at `value`, in the unit in which it would be fitted.
+    /// The same law with a delay of a force behind its motion of at most `longest` (s), positive or negative. The term
+    /// `delay` alone looks for at most twenty samples.
+    ///
+    /// # Errors
+    /// [`IdentifyError::OutOfRange`] if it is not positive and finite.
+    pub fn with_delay_up_to(mut self, longest: f64) -> Result<Self, IdentifyError> {
+        if !(longest > 0.0 && longest.is_finite()) {
+            return Err(IdentifyError::not_allowed("the longest delay of a force (s)", longest, "positive"));
+        }
+        self.terms = self.terms.with_delay_up_to(longest);
+        Ok(self)
+    }
+
+    /// The same law with the fitted parameter called `name` fixed at `value`, in the unit in which it would be fitted.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] if the value is not finite.
@@ -56,7 +69,10 @@ impl Candidate {
         catalogue(&mut Candidates)
     }
 
-    /// The law called `name` in the [`catalogue`](Self::catalogue), with the terms that follow it after plus signs.
+    /// The law called `name` in the [`catalogue`](Self::catalogue), with the [terms](Terms) that follow it after plus
+    /// signs: damping (`linear`, `quadratic`, `cubic`, `any sign`); for vibrations `power`, `cubic spring`, `quintic
+    /// spring`, `stop`, `gap`; for a force along a motion `zero`, `inertia`, `stiffness`, `gravity`, `asymmetry`, `load
+    /// offset`, `channels`, `delay`.
     ///
     /// ```
     /// use fmm_identify::Candidate;
@@ -64,6 +80,7 @@ impl Candidate {
     /// assert_eq!(Candidate::named("berger + quadratic")?.name(), "berger + quadratic");
     /// assert_eq!(Candidate::named("coulomb+linear+any sign")?.name(), "coulomb + linear of any sign");
     /// assert_eq!(Candidate::named("viscous+cubic_spring")?.name(), "viscous + cubic spring");
+    /// assert_eq!(Candidate::named("dahl + gravity + linear + zero")?.name(), "dahl + linear + zero + gravity");
     /// assert!(Candidate::named("coulomb + air").is_err());
     /// # Ok::<(), fmm_identify::IdentifyError>(())
     /// ```
@@ -101,7 +118,7 @@ impl Candidate {
         self.terms.name(self.law.name)
     }
 
-    /// Whether this law is a special case of `other`: some values of the parameters of `other` make it this one.
+    /// True if this law is a special case of `other`: some values of the parameters of `other` make it this one.
     pub(crate) fn is_nested_in(&self, other: &Self) -> bool {
         let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
         let further = || Term::ALL.into_iter().filter(|term| *term != Term::LinearDamping);
@@ -115,23 +132,23 @@ impl Candidate {
                 && further().all(|term| self.terms.has(term) == other.terms.has(term)))
     }
 
-    /// Whether the two are the same but for damping of the machine.
+    /// True if linear damping is the only difference between the two.
     pub(crate) fn differs_by_damping(&self, other: &Self) -> bool {
         let viscous = |candidate: &Self| candidate.law.has_slope() || candidate.terms.has_linear_damping();
-        let spring = |candidate: &Self| Term::ALL.map(|term| term.is_spring() && candidate.terms.has(term));
+        let others = |candidate: &Self| Term::ALL.map(|term| !term.is_damping() && candidate.terms.has(term));
         self.law.dry_name() == other.law.dry_name()
             && viscous(self) != viscous(other)
-            && spring(self) == spring(other)
+            && others(self) == others(other)
             && self.holds_as(other)
     }
 
-    /// Whether both hold the same parameters at the same values.
+    /// True if both fix the same parameters at the same values.
     fn holds_as(&self, other: &Self) -> bool {
         self.terms.held().count() == other.terms.held().count()
             && self.terms.held().all(|held| other.terms.held().any(|theirs| theirs == held))
     }
 
-    /// Whether the part of this law that does not grow with the speed is that of `other` for some values of its
+    /// True if the part of this law that does not grow with the speed is that of `other` for some values of its
     /// parameters.
     fn is_dry_case_of(&self, other: &Self) -> bool {
         // What the other holds, this one must hold as well.

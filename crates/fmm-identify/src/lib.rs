@@ -49,7 +49,7 @@
 //! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
 //! | How does damping depend on velocity? | [`fmm_frf::Backbone`]: frequency and damping over the amplitude |
 //! | Friction out of impacts of a hammer? | [`ImpactTrial`], and [`Experiment::impact`] for the motion or [`Experiment::mobility`] for its spectrum |
-//! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`], [`identify_force`]; [`ForceModel`] says what acts beside friction, [`compare_force`] which model the records prefer |
+//! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`] in [`Candidate::identify`] and [`compare`]; [`Terms`] lists what acts beside friction |
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
 //! | What if mass, stiffness or damping were others? | [`Problem::declared`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
 //! | Which test next? | [`Plan`]: what [`PlannedTest`]s would tell beside what is known, and which set of them is best |
@@ -107,7 +107,6 @@ mod error;
 mod experiment;
 mod finding;
 mod fit;
-mod force;
 mod identification;
 mod judgement;
 mod law;
@@ -125,14 +124,15 @@ mod warning;
 pub use candidate::Candidate;
 pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};
 pub use error::IdentifyError;
-pub use experiment::{Drive, Experiment, ImpactSummary, ImpactTrial, Offset, Preparation, RecordSummary, Sensor};
+pub use experiment::force::{ForceLoop, ForceRecord, Onset, SpeedBin};
+pub use experiment::{
+    Drive, Experiment, Experiments, ImpactSummary, ImpactTrial, Offset, Preparation, RecordSummary, Sensor,
+};
 pub use finding::{Contribution, Finding, Origin, Source};
 pub use fmm_model::Estimated;
-pub use force::{
-    ForceComparison, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation,
-    compare_force, identify_force,
+pub use identification::{
+    FittedMotion, Identification, Profile, Profiles, Validation, identify, identify_observed, identify_with,
 };
-pub use identification::{FittedMotion, Identification, Profile, Profiles, identify, identify_observed, identify_with};
 pub use judgement::{
     Comparison, Extension, FrictionOverLoad, LoadVerdict, NestedTest, ScoreTest, Search, compare, compare_observed,
     search, search_observed,

@@ -24,6 +24,13 @@ impl<T> Default for Pool<T> {
     }
 }
 
+/// A copy of its owner has memory of its own.
+impl<T> Clone for Pool<T> {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
 impl<T: Default> Pool<T> {
     /// Works with idle memory, or new one if there is none.
     pub(crate) fn lend<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {

@@ -16,7 +16,7 @@ use crate::input::Held;
 use crate::output::{Output, drawn, print, print_json};
 use clap::Args;
 use fmm_identify::{
-    Estimated, ForceIdentification, ForceLoop, ForceModel, ForceRecord, Onset, SpeedBin, Validation, compare_force,
+    Candidate, Estimated, ForceLoop, ForceRecord, Identification, Machine, Onset, SpeedBin, Validation, compare,
 };
 use serde_json::{Value, json};
 use source::Source;
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let mut described = Vec::with_capacity(models.len());
     for name in &models {
-        let mut model = ForceModel::named(name)?;
+        let mut model = Candidate::named(name)?;
         let is_meant = |held: &&Held| held.law.as_ref().is_none_or(|law| law_of(name) == *law);
         for held in arguments.hold.iter().filter(is_meant) {
             model = model.holding(&held.name, held.value)?;
@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
         described.push(model);
     }
-    let compared = compare_force(&described, &records)?;
+    let compared = compare(&Machine::per_unit_mass(), &records, &described)?;
     let found = compared.identifications();
     if let Some(folder) = arguments.output.folder()? {
         for (index, found) in found.iter().enumerate() {
@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             "loops": records.iter().map(loops).collect::<Vec<_>>(),
             "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
             "models": models,
-            "preferred": compared.preferred().model(),
+            "preferred": compared.preferred().law(),
             "is_decided": compared.is_decided(),
         });
         return print_json(&document);
@@ -194,11 +194,11 @@ fn onsets(record: &ForceRecord) -> Value {
 }
 
 /// Prediction error of the model on the record of a `file` to which it was not fitted.
-fn validation(found: &ForceIdentification, file: &Path, record: &ForceRecord) -> Result<Validation, String> {
-    found.validate_on(record).map_err(named(file))
+fn validation(found: &Identification, file: &Path, record: &ForceRecord) -> Result<Validation, String> {
+    found.validate(record).map_err(named(file))
 }
 
-fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
+fn document(found: &Identification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
     let findings: Vec<Value> = found
         .findings()
         .iter()
@@ -218,9 +218,9 @@ fn document(found: &ForceIdentification, files: &[PathBuf], others: &[ForceRecor
         validated.push(json!({ "file": file.display().to_string(), "rms": said.rms, "share_of_force": said.share() }));
     }
     Ok(json!({
-        "model": found.model(),
+        "model": found.law(),
         "rms_residual": found.rms_residual(),
-        "share_of_force": found.rms_residual() / found.force_deviation(),
+        "share_of_force": found.share_of_force(),
         "findings": findings,
         "not_fitted": validated,
         "warnings": found.warnings().iter().map(ToString::to_string).collect::<Vec<_>>(),
@@ -234,7 +234,7 @@ const LOADS: usize = 3;
 
 /// Force over position and over velocity with the fit in, friction over the speed without a law, and what is left over
 /// time and over the phase of the motion.
-fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel>, Box<dyn Error>> {
+fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Box<dyn Error>> {
     let said = found.predict(record)?;
     let velocity = format!("{}/s", record.position_unit());
     let against = |abscissae: &[f64], name: &str, unit: &str| {
@@ -242,7 +242,7 @@ fn panels(record: &ForceRecord, found: &ForceIdentification) -> Result<Vec<Panel
         let fitted = abscissae.iter().zip(&said).filter_map(|(x, said)| Some((*x, (*said)?))).collect();
         Panel::new(label(name, unit), label("force", record.force_unit()), 420.0)
             .with(Layer::new(Role::Measured, "measured", measured))
-            .with(Layer::new(Role::Fitted, found.model(), fitted))
+            .with(Layer::new(Role::Fitted, found.law(), fitted))
     };
     let bins = record.friction_over_speed_and_load(BINS, LOADS);
     let (speed, friction, bins) = if bins.iter().any(|bin| bin.coefficient().is_some()) {

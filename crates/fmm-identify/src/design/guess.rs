@@ -82,6 +82,7 @@ impl Guess {
             }
             _ => (vec![frequency], load / per_mass_of_unit),
         };
+        candidate.terms().require_vibration()?;
         let known: Vec<Parameter> = candidate.terms().parameters(&Unit::of("m")).collect();
         let named = known.iter().map(|parameter| {
             let name = parameter.name();

@@ -117,7 +117,7 @@ impl Local<'_> {
                     *value *= of_mass;
                 }
                 Term::CubicSpring | Term::QuinticSpring | Term::StopRatio => *value *= of_stiffness,
-                Term::PowerExponent | Term::Stop | Term::Gap => {}
+                _ => {}
             }
         }
         if let Load::Other(load) = test.load {

@@ -4,6 +4,7 @@ mod acceleration;
 mod drive;
 mod driven;
 pub(crate) mod first_guess;
+pub(crate) mod force;
 mod impact;
 pub(crate) mod impact_motion;
 mod impact_trial;
@@ -33,10 +34,61 @@ pub use sensor::Sensor;
 
 use crate::error::IdentifyError;
 use crate::experiment::first_guess::{Dissipation, FirstGuess};
+use crate::experiment::force::ForceRecord;
 use crate::experiment::lines::Lines;
 use crate::experiment::nuisance::Nuisance;
 use crate::machine::Machine;
 use crate::warning::Warning;
+
+/// Experiments of one identification: vibrations of a machine, or forces along motions.
+///
+/// A slice, array or vector of either makes it.
+///
+/// ```
+/// use fmm_identify::{Experiments, ForceRecord};
+///
+/// let record = ForceRecord::of_positions(&[0.0, 0.1, 0.2], &[0.0, 0.01, 0.02], &[0.8, 1.1, 1.1])?;
+/// assert!(matches!(Experiments::from(&[record]), Experiments::Forces([_])));
+/// # Ok::<(), fmm_identify::IdentifyError>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum Experiments<'a> {
+    /// Ring-downs, impacts and driven motions of one machine.
+    Vibrations(&'a [Experiment]),
+    /// Forces along motions of one contact.
+    Forces(&'a [ForceRecord]),
+}
+
+impl<'a> From<&'a [Experiment]> for Experiments<'a> {
+    fn from(experiments: &'a [Experiment]) -> Self {
+        Self::Vibrations(experiments)
+    }
+}
+
+impl<'a> From<&'a [ForceRecord]> for Experiments<'a> {
+    fn from(records: &'a [ForceRecord]) -> Self {
+        Self::Forces(records)
+    }
+}
+
+impl<'a, T, const N: usize> From<&'a [T; N]> for Experiments<'a>
+where
+    Self: From<&'a [T]>,
+{
+    fn from(experiments: &'a [T; N]) -> Self {
+        Self::from(experiments.as_slice())
+    }
+}
+
+impl<'a, T> From<&'a Vec<T>> for Experiments<'a>
+where
+    Self: From<&'a [T]>,
+{
+    fn from(experiments: &'a Vec<T>) -> Self {
+        Self::from(experiments.as_slice())
+    }
+}
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)),
 /// or a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).

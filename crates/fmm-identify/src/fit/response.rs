@@ -5,7 +5,7 @@ use fmm_model::{Parameter, Restoring};
 use fmm_record::Quantity;
 use fmm_sim::{Channels, Sampling, Trajectory};
 
-use crate::law::along::{Guide, MeasuredMotion, Place, places};
+use crate::law::along::{Alignment, MeasuredMotion, SampleLocation, locations};
 use crate::linear_algebra::inverse_of_products;
 use crate::machine::terms::Term;
 use crate::problem::Problem;
@@ -29,7 +29,7 @@ pub(crate) struct Response<'a> {
     /// Friction of the other law.
     problem: &'a Problem<'a>,
     motion: MeasuredMotion,
-    places: Vec<Place>,
+    locations: Vec<SampleLocation>,
     /// F/m of the simple law along the motion.
     friction: Vec<f64>,
     /// Factor of δx′ at the end of each step (1).
@@ -109,11 +109,11 @@ impl<'a> Response<'a> {
         let thinned = |column: &Vec<f64>| compared.iter().map(|(row, _)| column[*row]).collect::<Vec<_>>();
         let columns: Vec<Vec<f64>> = whole.iter().map(thinned).collect();
         let mut places_of = Vec::new();
-        places(&motion, 0..end, 0.0, &mut places_of);
+        locations(&motion, 0..end, 0.0, &mut places_of);
         Some(Self {
             problem,
             motion,
-            places: places_of,
+            locations: places_of,
             friction,
             turns,
             step,
@@ -172,16 +172,16 @@ impl<'a> Response<'a> {
     fn changed(&self, of_law: &[f64]) -> Result<Vec<f64>, EvaluationError> {
         let layout = self.problem.table();
         let law = &layout.family;
-        let guide = Guide {
+        let alignment = Alignment {
             motion: &self.motion,
             delay: 0.0,
             has_delay: false,
             deflection: 0.0,
             first: 0,
-            places: &self.places,
+            locations: &self.locations,
         };
         let mut friction = Vec::with_capacity(self.friction.len());
-        (law.along)(&law.values(&of_law[layout.law - layout.oscillator..]), guide, &mut friction)?;
+        (law.along)(&law.values(&of_law[layout.law - layout.oscillator..]), alignment, &mut friction)?;
         let terms = &layout.terms;
         let beside = |term: Term| terms.place(term).map_or(0.0, |place| of_law[place]);
         let [linear, quadratic, cubic, power, exponent] =

@@ -11,6 +11,7 @@ use fmm_model::Restoring;
 use crate::error::IdentifyError;
 use crate::problem::fitted::{Fall, Fitted};
 
+use crate::fit::forces::fit_forces;
 use crate::fit::response::Response;
 use crate::problem::Problem;
 use crate::residuals::structure::ResidualStructure;
@@ -82,6 +83,9 @@ pub(crate) fn fit_begun(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
+    if let Some(forces) = problem.forces() {
+        return fit_forces(problem, &forces, options, observer);
+    }
     if let Begin::Behind(plain) = begin {
         return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit.values())], options, observer);
     }

@@ -2,6 +2,7 @@
 
 pub(crate) mod drift;
 mod findings;
+mod force;
 mod limits;
 mod profile;
 
@@ -13,13 +14,14 @@ use fmm_sim::{Event, EventKind, Trajectory};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::Experiment;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
+use crate::experiment::{Experiment, Experiments};
 use crate::finding::Finding;
 use crate::fit::stages::{Begin, Near, Observer, fit_begun};
 use crate::identification::drift::{as_fitted, with_drift};
 use crate::identification::findings::findings;
+use crate::identification::force::ForceResults;
 use crate::law::Law;
 use crate::law::naming::LINEAR;
 use crate::law::naming::{Level, level_name};
@@ -33,7 +35,11 @@ use crate::residuals::rules::SIGNIFICANT;
 use crate::residuals::structure::{Covariance, ResidualStructure};
 use crate::warning::Warning;
 
+pub use force::Validation;
 pub use profile::{Profile, Profiles};
+
+/// Meanings of a level, of which an identification states some, the most wanted last.
+const LEVELS: [Level; 4] = [Level::PerMass, Level::Force, Level::Mu, Level::Coefficient];
 
 /// End of the fitted motion of one record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,10 +100,13 @@ pub struct Identification {
     pull_at_bound: Option<f64>,
     /// Of each record, what was fitted beside its motion.
     disturbances: Vec<Vec<Nuisance>>,
+    /// Amplitude of the records, or deviation of the forces, in the unit of the residuals.
     amplitude: f64,
+    /// Results for forces along motions; `None` for vibrations.
+    forces: Option<ForceResults>,
 }
 
-/// Identifies the parameters of law family `F` from ring-downs of one machine.
+/// Identifies the parameters of law family `F` from vibrations of one machine, or from forces along motions.
 ///
 /// Standard uncertainties take the residuals as independent if they look like noise. If the law misses something, so
 /// that neighbouring residuals are alike, they come from [`CorrelatedCovariance`](fmm_fit::CorrelatedCovariance) where
@@ -105,6 +114,11 @@ pub struct Identification {
 ///
 /// The law explains all dissipation that `machine` does not claim as its own known damping. Start values come
 /// from the records; the fit starts from each hypothesis that the amplitudes allow and keeps the best end.
+///
+/// A [force along a motion](crate::ForceRecord) depends on nothing that is known of a machine. At rest, and between two
+/// samples with velocities of opposite signs, friction by a law of the speed that leaps there lies anywhere between two
+/// levels: such a sample does not count, and a static level is fixed at the sliding one. A law with internal state has
+/// a value there; the deflection of its bristles at the beginning of each record is fitted.
 ///
 /// # Errors
 /// [`IdentifyError`] if there is no record, if records disagree in quantity or unit, or if the fit cannot begin.
@@ -130,20 +144,23 @@ pub struct Identification {
 /// println!("{found}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn identify<F: LawFamily>(machine: &Machine, decays: &[Experiment]) -> Result<Identification, IdentifyError> {
-    identify_with::<F>(machine, &Terms::NONE, decays)
+pub fn identify<'a, F: LawFamily>(
+    machine: &Machine,
+    experiments: impl Into<Experiments<'a>>,
+) -> Result<Identification, IdentifyError> {
+    identify_with::<F>(machine, &Terms::NONE, experiments)
 }
 
 /// Like [`identify`], with `terms` beside the law and fixed parameters.
 ///
 /// # Errors
 /// Those of [`identify`], and terms that do not fit the law.
-pub fn identify_with<F: LawFamily>(
+pub fn identify_with<'a, F: LawFamily>(
     machine: &Machine,
     terms: &Terms,
-    decays: &[Experiment],
+    experiments: impl Into<Experiments<'a>>,
 ) -> Result<Identification, IdentifyError> {
-    identify_observed::<F>(machine, terms, decays, &Options::default(), &mut |_| ControlFlow::Continue(()))
+    identify_observed::<F>(machine, terms, experiments, &Options::default(), &mut |_| ControlFlow::Continue(()))
 }
 
 /// Like [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where
@@ -152,14 +169,14 @@ pub fn identify_with<F: LawFamily>(
 ///
 /// # Errors
 /// Those of [`identify_with`].
-pub fn identify_observed<F: LawFamily>(
+pub fn identify_observed<'a, F: LawFamily>(
     machine: &Machine,
     terms: &Terms,
-    decays: &[Experiment],
+    experiments: impl Into<Experiments<'a>>,
     options: &Options,
     observer: &mut (dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send),
 ) -> Result<Identification, IdentifyError> {
-    identify_by(Law::of::<F>(), machine, terms, decays, Begin::Anywhere, options, observer)
+    identify_by(Law::of::<F>(), machine, terms, experiments.into(), Begin::Anywhere, options, observer)
 }
 
 /// Like [`identify_observed`], by a law that is known at run time.
@@ -167,18 +184,22 @@ pub(crate) fn identify_by(
     law: Law,
     machine: &Machine,
     terms: &Terms,
-    decays: &[Experiment],
+    experiments: Experiments<'_>,
     begin: Begin<'_>,
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Identification, IdentifyError> {
-    let problem = Problem::of(law, *machine, terms.clone(), decays)?;
+    let problem = Problem::of(law, *machine, terms.clone(), experiments)?;
     let fit = fit_begun(&problem, begin, options, observer)?;
+    let (terms, decays) = (&problem.table().terms, problem.experiments());
+    let forces = problem.forces().map(|forces| ForceResults::of(&forces, &fit));
+    let spread = forces.as_ref().map_or(1.0, ForceResults::spread);
     // One instrument for all records; the worst statement counts.
     let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
     let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
-    let structure = ResidualStructure::of(&fit, decays);
-    let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?;
+    let mut structure = ResidualStructure::of(&fit, experiments);
+    structure.residual *= spread.sqrt();
+    let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?.times(spread);
     let found = findings(machine, problem.table(), &fit, &covariance, gain);
     if let Some(finding) = found.iter().find(|finding| !finding.is_representable()) {
         return Err(IdentifyError::beyond_numbers(finding.parameter(), finding.value()));
@@ -191,21 +212,28 @@ pub(crate) fn identify_by(
         motions.push(FittedMotion::of_events(start, decay.record().interval(), &trajectory));
     }
     let contradicted: Vec<Warning> = Warning::of_knowledge(&problem, &fit).collect();
+    let amplitudes = scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0);
+    let amplitude = amplitudes.fold(forces.as_ref().map_or(0.0, ForceResults::deviation), f64::max);
+    let friction_at_rest = friction_at_rest(problem.table(), fit.values()).filter(|_| forces.is_none());
     let mut identification = Identification {
         law: terms.name(law.name),
-        friction_at_rest: friction_at_rest(problem.table(), fit.values()),
+        friction_at_rest,
         machine: *machine,
         structure,
         disturbances: decays.iter().map(|decay| decay.nuisances().to_vec()).collect(),
         pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
         covariance,
-        amplitude: scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0).fold(0.0, f64::max),
+        amplitude,
         fitted: Fitted { law: problem.table().family, terms: terms.clone(), fit },
         findings: found,
         motions,
         warnings: Vec::new(),
+        forces,
     };
-    identification.warnings = Warning::of(&identification, decays);
+    identification.warnings = match identification.force_unit() {
+        Some(unit) => Warning::of_force(&identification, unit),
+        None => Warning::of(&identification, decays),
+    };
     identification.warnings.extend(contradicted);
     let held = problem.table().family.held_breakaway();
     identification
@@ -215,17 +243,48 @@ pub(crate) fn identify_by(
 }
 
 impl Candidate {
-    pub(crate) fn identify(
+    /// Identifies the parameters of this law and its terms, as [`identify`].
+    ///
+    /// ```
+    /// use fmm_identify::{Candidate, ForceRecord, Machine};
+    ///
+    /// // A slide driven to and fro, 40 mm at 0.5 Hz; 12 N and 30 N s/m of friction, and a sensor whose zero is 3 N off.
+    /// let times: Vec<f64> = (0..400).map(|i| 0.01 * f64::from(i)).collect();
+    /// let turn = std::f64::consts::PI;
+    /// let positions: Vec<f64> = times.iter().map(|t| 0.02 * (turn * t).sin()).collect();
+    /// let velocities: Vec<f64> = times.iter().map(|t| 0.02 * turn * (turn * t).cos()).collect();
+    /// let forces: Vec<f64> = velocities.iter().map(|v| 12.0 * v.signum() + 30.0 * v + 3.0).collect();
+    ///
+    /// let record = ForceRecord::of_positions(&times, &positions, &forces)?.with_velocities(&velocities)?;
+    /// let found = Candidate::named("coulomb + linear + zero")?.identify(&Machine::per_unit_mass(), &[record])?;
+    /// assert!((found.finding("friction_force").unwrap().value() - 12.0).abs() < 1e-9);
+    /// assert!((found.finding("damping").unwrap().value() - 30.0).abs() < 1e-7);
+    /// assert!((found.finding("zero").unwrap().value() - 3.0).abs() < 1e-9);
+    /// println!("{found}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`identify_with`].
+    pub fn identify<'a>(
         &self,
         machine: &Machine,
-        decays: &[Experiment],
+        experiments: impl Into<Experiments<'a>>,
+    ) -> Result<Identification, IdentifyError> {
+        self.identify_observed(machine, experiments.into(), &Options::default(), &mut |_| ControlFlow::Continue(()))
+    }
+
+    pub(crate) fn identify_observed(
+        &self,
+        machine: &Machine,
+        experiments: Experiments<'_>,
         options: &Options,
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
-        identify_by(*self.law(), machine, self.terms(), decays, Begin::Anywhere, options, observer)
+        identify_by(*self.law(), machine, self.terms(), experiments, Begin::Anywhere, options, observer)
     }
 
-    /// Like [`identify`](Self::identify), begun near other fits of the same records.
+    /// Like [`identify_observed`](Self::identify_observed), begun near other fits of the same records.
     pub(crate) fn identify_near(
         &self,
         machine: &Machine,
@@ -235,7 +294,7 @@ impl Candidate {
         observer: &mut Observer<'_>,
     ) -> Result<Identification, IdentifyError> {
         let begin = near.map_or(Begin::Anywhere, Begin::Near);
-        identify_by(*self.law(), machine, self.terms(), decays, begin, options, observer)
+        identify_by(*self.law(), machine, self.terms(), decays.into(), begin, options, observer)
     }
 
     /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
@@ -417,6 +476,12 @@ impl Identification {
         self.covariance.noise_of_residuals()
     }
 
+    /// Number of residuals that count.
+    pub(crate) fn samples(&self) -> usize {
+        let all = self.fitted.fit.residuals().len();
+        self.counts().map_or(all, |counts| counts.iter().filter(|counts| **counts).count())
+    }
+
     /// Independent residuals that those of this fit count as (1).
     pub(crate) fn effective_count(&self) -> f64 {
         self.covariance.effective_count()
@@ -438,16 +503,40 @@ impl Identification {
             && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT)
     }
 
-    /// By how much this fit is worse than that by `other`, in variances of the noise that the residuals of the other
-    /// show in the direction in which the laws differ (1), and the degrees of freedom with which that variance is
-    /// known.
+    /// Residuals of this fit, and of `other`, at the samples that count for both; zero elsewhere.
+    fn residuals_beside(&self, other: &Self) -> [Vec<f64>; 2] {
+        let counts = |row: usize| [self, other].iter().all(|one| one.counts().is_none_or(|counts| counts[row]));
+        [self, other].map(|one| {
+            let residuals = one.fitted.fit.residuals().iter().enumerate();
+            residuals.map(|(row, residual)| if counts(row) { *residual } else { 0.0 }).collect()
+        })
+    }
+
+    /// Whether the same samples count for this fit and for `other`.
+    pub(crate) fn counts_as(&self, other: &Self) -> bool {
+        self.counts() == other.counts()
+    }
+
+    /// Sum of squares of this fit less that of `other`, over the samples that count for both.
+    pub(crate) fn excess_beside(&self, other: &Self) -> f64 {
+        let floor = self.floor().max(other.floor());
+        let [own, theirs] = if self.counts_as(other) {
+            [self, other].map(|one| one.fitted.fit.sum_of_squares())
+        } else {
+            self.residuals_beside(other).map(|residuals| residuals.iter().map(|residual| residual * residual).sum())
+        };
+        own.max(floor) - theirs.max(floor)
+    }
+
+    /// Excess of this fit over that by `other`, in variances of the noise that the residuals of the other show in the
+    /// direction in which the laws differ (1), and the degrees of freedom with which that variance is known.
     pub(crate) fn misfit_beside(&self, other: &Self) -> (f64, f64) {
         let floor = self.floor().max(other.floor());
-        let excess = self.fitted.fit.sum_of_squares().max(floor) - other.fitted.fit.sum_of_squares().max(floor);
-        let pairs = self.fitted.fit.residuals().iter().zip(other.fitted.fit.residuals());
-        let difference: Vec<f64> = pairs.map(|(own, theirs)| own - theirs).collect();
+        let excess = self.excess_beside(other);
+        let [own, theirs] = self.residuals_beside(other);
+        let difference: Vec<f64> = own.iter().zip(&theirs).map(|(own, theirs)| own - theirs).collect();
         let rounding = floor / difference.len().max(1) as f64;
-        let variance = other.noise().variance_along(&difference).max(rounding);
+        let variance = (other.noise().variance_along(&difference) * other.spread()).max(rounding);
         let freedom = 2.0 * other.noise().ordinates_along(&difference);
         let misfit = if excess > 0.0 && variance > 0.0 { excess / variance } else { 0.0 };
         (misfit, freedom.min(other.fitted.fit.degrees_of_freedom() as f64).max(1.0))
@@ -480,9 +569,8 @@ impl Identification {
             .fitted()
             .filter(|parameter| matches!(parameter.role(), Role::LevelAbove | Role::Excess | Role::Breakaway));
         let at_rest = at_rest.filter_map(|parameter| {
-            let names =
-                [Level::Mu, Level::Force, Level::PerMass].map(|level| level_name(parameter.parameter().name(), level));
-            names.iter().find_map(|name| self.finding(name).filter(|finding| finding.parameter().unit() == unit))
+            let names = LEVELS.map(|level| level_name(parameter.parameter().name(), level));
+            names.iter().rev().find_map(|name| self.finding(name).filter(|finding| finding.parameter().unit() == unit))
         });
         std::iter::once(sliding).chain(at_rest).collect()
     }
@@ -491,7 +579,7 @@ impl Identification {
     fn level_names(&self) -> Vec<String> {
         let Some(level) = self.fitted.law.level() else { return Vec::new() };
         let Some(parameter) = self.fitted.law.fitted().nth(level) else { return Vec::new() };
-        [Level::PerMass, Level::Force, Level::Mu].map(|level| level_name(parameter.parameter().name(), level)).to_vec()
+        LEVELS.map(|level| level_name(parameter.parameter().name(), level)).to_vec()
     }
 
     /// Sum of squares below which a fit reproduces its records to rounding, and none is better than another.

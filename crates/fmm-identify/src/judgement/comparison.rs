@@ -6,7 +6,7 @@ use fmm_fit::{Options, Progress, f_tail};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::{Experiment, RecordSummary};
+use crate::experiment::{Experiment, Experiments, RecordSummary};
 use crate::finding::{Finding, Source};
 use crate::identification::{Identification, closest};
 use crate::judgement::filtering::filtering_sensor;
@@ -55,16 +55,37 @@ pub struct Comparison {
     pub(crate) warnings: Vec<Warning>,
 }
 
-/// Identifies `decays` by each of `candidates` and compares them.
+/// Identifies the `experiments` by each of `candidates` and compares them.
+///
+/// Of forces along motions, two laws are compared at the samples that count for both.
+///
+/// ```
+/// use fmm_identify::{Candidate, ForceRecord, Machine, compare};
+///
+/// // 12 N and 30 N s/m, with 0.2 N of noise.
+/// let times: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
+/// let velocities: Vec<f64> = times.iter().map(|t| 0.06 * (3.0 * t).cos()).collect();
+/// let noise = |i: usize| 0.2 * (1.7 * (i * i) as f64).sin();
+/// let forces: Vec<f64> =
+///     velocities.iter().enumerate().map(|(i, v)| 12.0 * v.signum() + 30.0 * v + noise(i)).collect();
+/// let record = ForceRecord::of_velocities(&times, &velocities, &forces)?;
+/// let candidates = ["coulomb", "coulomb + linear", "coulomb + linear + zero"];
+/// let candidates = candidates.into_iter().map(Candidate::named).collect::<Result<Vec<_>, _>>()?;
+/// let compared = compare(&Machine::per_unit_mass(), &[record], &candidates)?;
+/// assert_eq!(compared.preferred().law(), "coulomb + linear");
+/// println!("{compared}");
+/// # Ok::<(), fmm_identify::IdentifyError>(())
+/// ```
 ///
 /// # Errors
-/// [`IdentifyError`] as for [`identify`](crate::identify), and [`IdentifyError::Missing`].
-pub fn compare(
+/// [`IdentifyError`] as for [`identify`](crate::identify), [`IdentifyError::Missing`] without a candidate, and
+/// [`IdentifyError::Contradiction`] for a candidate that is given twice.
+pub fn compare<'a>(
     machine: &Machine,
-    decays: &[Experiment],
+    experiments: impl Into<Experiments<'a>>,
     candidates: &[Candidate],
 ) -> Result<Comparison, IdentifyError> {
-    compare_observed(machine, decays, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
+    compare_observed(machine, experiments, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
 }
 
 /// The comparison of [`compare`] with options for the solver and an observer that gets the law's name with every trial
@@ -72,24 +93,32 @@ pub fn compare(
 ///
 /// # Errors
 /// Those of [`compare`].
-pub fn compare_observed(
+pub fn compare_observed<'a>(
     machine: &Machine,
-    decays: &[Experiment],
+    experiments: impl Into<Experiments<'a>>,
     candidates: &[Candidate],
     options: &Options,
     mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
-    let mut fit = |decays: &[Experiment]| {
+    let names: Vec<String> = candidates.iter().map(Candidate::name).collect();
+    if let Some((_, twice)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
+        return Err(IdentifyError::contradiction(format!("{twice} is given twice; leave one out")));
+    }
+    let mut fit = |experiments: Experiments<'_>| {
         let fitted = candidates.iter().map(|candidate| {
             let name = candidate.name();
             let mut observe = |progress: &Progress<'_>| observer(&name, progress);
-            candidate.identify(machine, decays, options, &mut observe)
+            candidate.identify_observed(machine, experiments, options, &mut observe)
         });
         fitted.collect::<Result<Vec<_>, _>>()
     };
-    let identifications = fit(decays)?;
+    let experiments = experiments.into();
+    let identifications = fit(experiments)?;
+    let Experiments::Vibrations(decays) = experiments else {
+        return Comparison::of(&[], candidates, identifications);
+    };
     if let Some(drifting) = closest(&identifications).and_then(|found| found.with_drift(decays)) {
-        let with_drift = fit(&drifting)?;
+        let with_drift = fit((&drifting).into())?;
         if explains(&with_drift) {
             return Comparison::of(&drifting, candidates, with_drift);
         }
@@ -103,7 +132,7 @@ pub(crate) fn explains(identifications: &[Identification]) -> bool {
 }
 
 impl Comparison {
-    /// The comparison of `candidates` by their `identifications` from `decays`.
+    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have none.
     pub(crate) fn of(
         decays: &[Experiment],
         candidates: &[Candidate],
@@ -335,7 +364,7 @@ impl Comparison {
         &self.tests
     }
 
-    /// Each record with its preparation and the observations made in it.
+    /// Each record of a vibration with its preparation and the observations made in it.
     pub fn records(&self) -> &[RecordSummary] {
         &self.records
     }

@@ -71,8 +71,15 @@ pub(crate) fn behind_filter(
     let options = Options::default().with_max_iterations(MOST_ITERATIONS_OF_FILTER);
     let (machine, terms) = (simple.machine(), simple.terms());
     let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
-    let found =
-        identify_by(simple.family(), machine, terms, &seen, Begin::Behind(simple.fitted()), &options, &mut observer)?;
+    let found = identify_by(
+        simple.family(),
+        machine,
+        terms,
+        (&seen).into(),
+        Begin::Behind(simple.fitted()),
+        &options,
+        &mut observer,
+    )?;
     let settled = decays.iter().map(|decay| sensor.settling(decay.guess().frequency())).fold(0.0, f64::max);
     Ok(Some((found, settled)))
 }

@@ -59,8 +59,9 @@ pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identificatio
         sentences.push(format!("the fit {}", found.fit().outcome()));
     }
     let least = found.fit().sum_of_squares() * (1.0 - ROUNDING_OF_SQUARES) - found.floor();
+    // Where other samples count, a special case may fit its own better.
     let is_better = |(special, other): &(&Candidate, &Identification)| {
-        other.fit().sum_of_squares() < least && special.is_nested_in(&candidates[place])
+        found.counts_as(other) && other.fit().sum_of_squares() < least && special.is_nested_in(&candidates[place])
     };
     if let Some((special, _)) = candidates.iter().zip(identifications).find(is_better) {
         sentences.push(format!("the fit missed its lowest minimum, as {} fits better", special.name()));
@@ -75,15 +76,17 @@ impl Judgement {
     /// D_i = (S_i − S_b)/σ_i²,     σ_i² = δᵀΣδ/δᵀδ,     δ = r_i − r_b
     /// ```
     ///
-    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. σ_i² is the variance of
-    /// that noise in the direction in which the two laws differ: twice the logarithm of a ratio of likelihoods for
-    /// correlated noise. It depends on the two laws alone, and not on how often the record was sampled, nor on other
-    /// candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the best law has
-    /// more parameters, at least one; times the positions at which a best law that leaps can leap, each of which is a try
-    /// (Bonferroni).
+    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. Samples that do not count
+    /// for one of the two laws are left out of S and δ, and b is the law that fewest others fit better than. σ_i² is the
+    /// variance of that noise in the direction in which the two laws differ: twice the logarithm of a ratio of
+    /// likelihoods for correlated noise. It depends on the two laws alone, and not on how often the record was sampled,
+    /// nor on other candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the best
+    /// law has more parameters, at least one; times the positions at which a best law that leaps can leap, each of which
+    /// is a try (Bonferroni).
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
-        let floor = |found: &Identification| found.fit().sum_of_squares().max(found.floor());
-        let best = identifications.iter().min_by(|a, b| floor(a).total_cmp(&floor(b)))?;
+        let better =
+            |found: &Identification| identifications.iter().filter(|other| found.excess_beside(other) > 0.0).count();
+        let best = identifications.iter().min_by_key(|found| better(found))?;
         let rank = |i: usize| identifications[i].parameters_used();
         let standings = identifications.iter().map(|found| {
             let (misfit, freedom) = found.misfit_beside(best);

@@ -22,42 +22,42 @@ pub(crate) struct MeasuredMotion {
 
 /// A measured motion, seen some time earlier than the force.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Guide<'a, D> {
+pub(crate) struct Alignment<'a, D> {
     pub(crate) motion: &'a MeasuredMotion,
     /// By how much the force comes later than the motion (s).
     pub(crate) delay: D,
-    /// True if there is such a delay, known or to be found.
+    /// True with such a delay, known or to be found.
     pub(crate) has_delay: bool,
     /// Deflection of all bristles at the first sample, as a share of their bounds (1).
     pub(crate) deflection: D,
     /// The first sample that is compared; the others follow it.
     pub(crate) first: usize,
     /// One for each sample that is compared.
-    pub(crate) places: &'a [Place],
+    pub(crate) locations: &'a [SampleLocation],
 }
 
-/// Place of the motion when the force of a sample acted.
+/// Place in the motion at which the force of a sample acted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct SampleLocation {
     /// The sample before it, or at it.
     pub(crate) node: usize,
     /// True if the contact slides there for certain: it does not rest, nor turn before the next sample.
     pub(crate) slides: bool,
 }
 
-/// Friction coefficient (1) at the sample of each place; of a law of the speed that leaps at rest none, 0, where the
+/// Friction coefficient (1) at the sample of each location; of a law of the speed that leaps at rest none, 0, where the
 /// contact may not slide.
-pub(crate) type Along<D> = fn(&[D], Guide<'_, D>, &mut Vec<D>) -> Result<(), EvaluationError>;
+pub(crate) type Along<D> = fn(&[D], Alignment<'_, D>, &mut Vec<D>) -> Result<(), EvaluationError>;
 
 /// Friction of family `F` by these `values`.
 pub(crate) fn along<F: LawFamily, D: Scalar>(
     values: &[D],
-    guide: Guide<'_, D>,
+    alignment: Alignment<'_, D>,
     friction: &mut Vec<D>,
 ) -> Result<(), EvaluationError> {
     friction.clear();
     let law = F::at(values)?;
-    F::visit(Following { law: &law, guide, friction })
+    F::visit(Following { law: &law, alignment, friction })
 }
 
 /// A way of so many largest deflections makes bristles slide.
@@ -73,8 +73,13 @@ impl MeasuredMotion {
 }
 
 /// Places of the samples `rows` for a `delay` (s).
-pub(crate) fn places(motion: &MeasuredMotion, rows: std::ops::Range<usize>, delay: f64, places: &mut Vec<Place>) {
-    places.clear();
+pub(crate) fn locations(
+    motion: &MeasuredMotion,
+    rows: std::ops::Range<usize>,
+    delay: f64,
+    locations: &mut Vec<SampleLocation>,
+) {
+    locations.clear();
     let (times, velocities) = (&motion.times, &motion.velocities);
     let mut node = 0;
     for row in rows {
@@ -87,20 +92,20 @@ pub(crate) fn places(motion: &MeasuredMotion, rows: std::ops::Range<usize>, dela
         let velocity = begin + (end - begin) * elapsed / (times[node + 1] - times[node]);
         let turns = elapsed > 0.0 && begin * end <= 0.0;
         let rests = velocity.abs() <= motion.rest_speed;
-        places.push(Place { node, slides: !turns && !rests });
+        locations.push(SampleLocation { node, slides: !turns && !rests });
     }
 }
 
-impl<D: Scalar> Guide<'_, D> {
-    /// The time (s) from the node of a place to the motion at sample `row`.
-    pub(crate) fn elapsed(&self, row: usize, place: Place) -> D {
-        D::from(self.motion.times[row] - self.motion.times[place.node]) - self.delay
+impl<D: Scalar> Alignment<'_, D> {
+    /// The time (s) from the node of a location to the motion at sample `row`.
+    pub(crate) fn elapsed(&self, row: usize, location: SampleLocation) -> D {
+        D::from(self.motion.times[row] - self.motion.times[location.node]) - self.delay
     }
 
     /// Value of a measured `series` between two samples.
     #[inline]
-    pub(crate) fn between(&self, series: &[f64], place: Place, elapsed: D) -> D {
-        let (node, times) = (place.node, &self.motion.times);
+    pub(crate) fn between(&self, series: &[f64], location: SampleLocation, elapsed: D) -> D {
+        let (node, times) = (location.node, &self.motion.times);
         if !self.has_delay && elapsed.value() == 0.0 {
             return D::from(series[node]);
         }
@@ -123,9 +128,9 @@ impl<D: Scalar> Guide<'_, D> {
         let mut path = vec![(0.0, first[0]), (approach, first[1])];
         let since = |node: usize| approach + (times[node] - times[0]);
         for node in 0..times.len() - 1 {
-            let leg = Leg::of(self.motion, node);
-            path.push((since(node), (positions[node], leg.velocity)));
-            let end = leg.velocity + leg.acceleration * leg.duration;
+            let segment = Segment::of(self.motion, node);
+            path.push((since(node), (positions[node], segment.velocity)));
+            let end = segment.velocity + segment.acceleration * segment.duration;
             path.push((since(node + 1), (positions[node + 1], end)));
         }
         let state =
@@ -133,9 +138,9 @@ impl<D: Scalar> Guide<'_, D> {
         let (since, states): (Vec<D>, Vec<_>) = path.into_iter().map(|(since, at)| (D::from(since), state(at))).unzip();
         let points = friction_along(law, D::from(1.0), &PrescribedMotion::through(&since, &states)?)?;
         friction.clear();
-        for (row, place) in (self.first..).zip(self.places) {
-            let node = place.node.min(times.len() - 2);
-            let share = self.elapsed(row, Place { node, ..*place }) / (times[node + 1] - times[node]);
+        for (row, location) in (self.first..).zip(self.locations) {
+            let node = location.node.min(times.len() - 2);
+            let share = self.elapsed(row, SampleLocation { node, ..*location }) / (times[node + 1] - times[node]);
             let [begin, end] = [2, 3].map(|point| points[2 * node + point].force);
             friction.push(begin + (end - begin) * share);
         }
@@ -145,7 +150,7 @@ impl<D: Scalar> Guide<'_, D> {
 
 /// The motion between two samples: the velocity changes in proportion to time, and what the positions differ by from
 /// that is spread evenly.
-struct Leg {
+struct Segment {
     duration: f64,
     /// Velocity at the beginning, with what is spread.
     velocity: f64,
@@ -154,7 +159,7 @@ struct Leg {
     turn: Option<f64>,
 }
 
-impl Leg {
+impl Segment {
     fn of(motion: &MeasuredMotion, node: usize) -> Self {
         let change = |series: &[f64]| series[node + 1] - series[node];
         let (duration, [begin, end]) = (change(&motion.times), [0, 1].map(|next| motion.velocities[node + next]));
@@ -187,7 +192,7 @@ impl Leg {
 
 struct Following<'a, 'g, D, L> {
     law: &'a L,
-    guide: Guide<'g, D>,
+    alignment: Alignment<'g, D>,
     friction: &'a mut Vec<D>,
 }
 
@@ -198,16 +203,16 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
     where
         L: SlidingLaw<D>,
     {
-        let Self { law, guide, friction } = self;
+        let Self { law, alignment, friction } = self;
         let leaps = law.coefficient(D::from(0.0)).value() > 0.0;
-        for (row, place) in (guide.first..).zip(guide.places) {
-            if leaps && !place.slides {
+        for (row, location) in (alignment.first..).zip(alignment.locations) {
+            if leaps && !location.slides {
                 friction.push(D::from(0.0));
                 continue;
             }
-            let elapsed = guide.elapsed(row, *place);
-            let velocity = guide.between(&guide.motion.velocities, *place, elapsed);
-            let acceleration = guide.between(&guide.motion.accelerations, *place, elapsed);
+            let elapsed = alignment.elapsed(row, *location);
+            let velocity = alignment.between(&alignment.motion.velocities, *location, elapsed);
+            let acceleration = alignment.between(&alignment.motion.accelerations, *location, elapsed);
             let losing = velocity.value() * acceleration.value() < 0.0;
             let speed = velocity.abs();
             let size = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
@@ -220,26 +225,26 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
     where
         L: BristleLaw<D>,
     {
-        let Self { law, guide, friction } = self;
-        let mut state: Vec<D> = (0..law.states()).map(|index| law.bound(index) * guide.deflection).collect();
+        let Self { law, alignment, friction } = self;
+        let mut state: Vec<D> = (0..law.states()).map(|index| law.bound(index) * alignment.deflection).collect();
         let (mut here, mut rate) = (state.clone(), state.clone());
         let mut at = 0;
-        for (row, place) in (guide.first..).zip(guide.places) {
-            while at < place.node {
-                let leg = Leg::of(guide.motion, at);
-                if !leg.carry(law, D::from(leg.duration), &mut state) {
-                    return guide.stepped(law, friction);
+        for (row, location) in (alignment.first..).zip(alignment.locations) {
+            while at < location.node {
+                let segment = Segment::of(alignment.motion, at);
+                if !segment.carry(law, D::from(segment.duration), &mut state) {
+                    return alignment.stepped(law, friction);
                 }
                 at += 1;
             }
-            let elapsed = guide.elapsed(row, *place);
+            let elapsed = alignment.elapsed(row, *location);
             here.copy_from_slice(&state);
             // A delay has its derivative even where no time has passed.
-            let is_later = guide.has_delay || elapsed.value() != 0.0;
-            if is_later && !Leg::of(guide.motion, at).carry(law, elapsed, &mut here) {
-                return guide.stepped(law, friction);
+            let is_later = alignment.has_delay || elapsed.value() != 0.0;
+            if is_later && !Segment::of(alignment.motion, at).carry(law, elapsed, &mut here) {
+                return alignment.stepped(law, friction);
             }
-            let velocity = guide.between(&guide.motion.velocities, *place, elapsed);
+            let velocity = alignment.between(&alignment.motion.velocities, *location, elapsed);
             law.rate(velocity, &here, Regime::ALL_HOLD, &mut rate);
             friction.push(law.coefficient(velocity, &here, &rate));
         }

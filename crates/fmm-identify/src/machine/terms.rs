@@ -1,11 +1,26 @@
-//! Terms of the machine that are fitted beside the law, and parameters that are held.
+//! Terms that are fitted beside the law, and parameters that are fixed.
 
 use std::fmt::Write as _;
 
-use crate::law::naming::LINEAR;
 use fmm_model::{Bounds, ModelError, Parameter, Restoring, Scalar, Unit};
 
-/// Damping and spring terms of the machine that are fitted beside the law, and parameters that are held.
+use crate::error::IdentifyError;
+use crate::law::naming::{LINEAR, Units};
+
+/// Terms that are fitted beside the law, and parameters that are fixed.
+///
+/// Linear, quadratic and cubic damping belong to every experiment; damping with a free power and the terms of the
+/// spring to vibrations; zero, inertia, stiffness, gravity, asymmetry, load offset, channels and delay to a
+/// [force along a motion](crate::ForceRecord):
+///
+/// ```text
+/// F(t + τ) = (N + N₀) (µ + a |µ|) + c v + c₂ |v| v + c₃ v³ + m v' + k x + A sin x + B cos x + F₀ + Σ κᵢ yᵢ(t + τ)
+/// ```
+///
+/// µ is the law, with the sign of the velocity; N is 1 without a measured load, so that levels are forces. A force
+/// along a motion separates the levels of the two directions, a = (F₊ − F₋)/(F₊ + F₋); in a ring-down these are a level
+/// and a force that moves the rest position. yᵢ are the [channels](crate::ForceRecord::with_channel) that were measured
+/// beside the force. [`Candidate::named`](crate::Candidate::named) has a word for each term.
 ///
 /// ```
 /// use fmm_identify::Terms;
@@ -19,10 +34,12 @@ use fmm_model::{Bounds, ModelError, Parameter, Restoring, Scalar, Unit};
 pub struct Terms {
     has: [bool; Term::ALL.len()],
     any_sign: bool,
+    /// The longest delay of a force behind its motion (s); `None` for twenty samples.
+    longest_delay: Option<f64>,
     held: Vec<(String, f64)>,
 }
 
-/// A term of the machine that is fitted beside the law.
+/// A term that is fitted beside the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Term {
     LinearDamping,
@@ -37,11 +54,29 @@ pub(crate) enum Term {
     /// The stiffness beyond the stop before it.
     StopRatio,
     Gap,
+    /// Zero of the force, F₀.
+    Zero,
+    /// Inertia m v' of the mass between the force sensor and the contact.
+    Inertia,
+    /// Stiffness k x.
+    Stiffness,
+    /// Gravity on a joint, A sin x, for angles x in rad.
+    Gravity,
+    /// Its other part, B cos x.
+    GravityCosine,
+    /// Levels that differ by direction.
+    Asymmetry,
+    /// Load N₀ beside the measured one: friction that does not depend on the load.
+    LoadOffset,
+    /// Shares κᵢ of the channels that were measured beside the force.
+    Channels,
+    /// Delay τ of the force behind the motion, of either sign.
+    Delay,
 }
 
 impl Term {
-    /// All terms, in the order of their parameters.
-    pub(crate) const ALL: [Self; 10] = [
+    /// All terms, in the order of their words in the name of a candidate.
+    pub(crate) const ALL: [Self; 19] = [
         Self::LinearDamping,
         Self::QuadraticDamping,
         Self::CubicDamping,
@@ -52,6 +87,15 @@ impl Term {
         Self::Stop,
         Self::StopRatio,
         Self::Gap,
+        Self::Zero,
+        Self::Inertia,
+        Self::Stiffness,
+        Self::Gravity,
+        Self::GravityCosine,
+        Self::Asymmetry,
+        Self::LoadOffset,
+        Self::Channels,
+        Self::Delay,
     ];
 
     /// The word by which a candidate has it, after a plus sign; `None` for the second number of a term.
@@ -65,7 +109,15 @@ impl Term {
             Self::QuinticSpring => Some("quintic spring"),
             Self::Stop => Some("stop"),
             Self::Gap => Some("gap"),
-            Self::PowerExponent | Self::StopRatio => None,
+            Self::Zero => Some("zero"),
+            Self::Inertia => Some("inertia"),
+            Self::Stiffness => Some("stiffness"),
+            Self::Gravity => Some("gravity"),
+            Self::Asymmetry => Some("asymmetry"),
+            Self::LoadOffset => Some("load offset"),
+            Self::Channels => Some("channels"),
+            Self::Delay => Some("delay"),
+            Self::PowerExponent | Self::StopRatio | Self::GravityCosine => None,
         }
     }
 
@@ -84,25 +136,37 @@ impl Term {
         match self {
             Self::PowerDamping => Some(Self::PowerExponent),
             Self::Stop => Some(Self::StopRatio),
+            Self::Gravity => Some(Self::GravityCosine),
             _ => None,
         }
     }
 
-    /// True if it is part of the restoring force.
+    /// True for a part of the restoring force.
     pub(crate) const fn is_spring(self) -> bool {
         matches!(self, Self::CubicSpring | Self::QuinticSpring | Self::Stop | Self::StopRatio | Self::Gap)
+    }
+
+    /// True for damping.
+    pub(crate) const fn is_damping(self) -> bool {
+        use Term::{CubicDamping, LinearDamping, PowerDamping, PowerExponent, QuadraticDamping};
+        matches!(self, LinearDamping | QuadraticDamping | CubicDamping | PowerDamping | PowerExponent)
+    }
+
+    /// True for a term that a force along a motion has, and no vibration.
+    const fn is_of_forces_alone(self) -> bool {
+        !self.is_damping() && !self.is_spring()
     }
 
     /// The power of the gain of a record to which its parameter is proportional; `exponent` is that of a power-law
     /// damping.
     pub(crate) const fn power_of_gain(self, exponent: f64) -> f64 {
         match self {
-            Self::LinearDamping | Self::PowerExponent | Self::StopRatio => 0.0,
             Self::Stop | Self::Gap => 1.0,
             Self::QuadraticDamping => -1.0,
             Self::CubicDamping | Self::CubicSpring => -2.0,
             Self::QuinticSpring => -4.0,
             Self::PowerDamping => 1.0 - exponent,
+            _ => 0.0,
         }
     }
 
@@ -117,8 +181,9 @@ impl Term {
         Some(Parameter::named(name, symbol, Unit::of("1/s²").per(&position.power(power)).to_string()))
     }
 
-    /// Its parameter, for positions in units of `position`; damping within the bounds `damping`.
-    fn parameter(self, position: &Unit, damping: Bounds) -> Parameter {
+    /// Its parameter in a vibration with positions in units of `position`, damping within the bounds `damping`; `None`
+    /// for a term that a vibration does not have.
+    fn parameter(self, position: &Unit, damping: Bounds) -> Option<Parameter> {
         let second = Unit::of("s");
         let (name, symbol, unit, bounds) = match self {
             Self::LinearDamping => (LINEAR, "c/m", Unit::of("1/s"), damping),
@@ -135,8 +200,36 @@ impl Term {
             Self::Stop => ("stop_distance", "g", position.clone(), Bounds::POSITIVE),
             Self::StopRatio => ("stop_stiffness_ratio", "b", Unit::default(), Bounds::NOT_NEGATIVE),
             Self::Gap => ("gap", "g", position.clone(), Bounds::NOT_NEGATIVE),
+            _ => return None,
         };
-        Parameter::named(name, symbol, unit.to_string()).bounded(bounds)
+        Some(Parameter::named(name, symbol, unit.to_string()).bounded(bounds))
+    }
+
+    /// Its parameter in a force along a motion in these units, damping within the bounds `damping`; `None` for a term
+    /// whose parameters depend on the records, and for one that such a force does not have.
+    pub(crate) fn force_parameter(self, units: &Units, damping: Bounds) -> Option<Parameter> {
+        let Units { position, force } = units;
+        let per_speed = |power| (force.per(&units.velocity().power(power)), damping);
+        let of_force = || (force.clone(), Bounds::UNBOUNDED);
+        let (name, symbol, (unit, bounds)) = match self {
+            Self::LinearDamping => ("damping", "c", per_speed(1)),
+            Self::QuadraticDamping => ("quadratic_damping", "c₂", per_speed(2)),
+            Self::CubicDamping => ("cubic_damping", "c₃", per_speed(3)),
+            Self::Zero => ("zero", "F₀", of_force()),
+            Self::Inertia => {
+                // An angle is a number here: a torque by an angular acceleration is kg m².
+                let force = force.with("N", &Unit::of("kg m/s²"));
+                let unit = force.per(&units.acceleration()).with("rad", &Unit::default());
+                ("inertia", "m", (unit, Bounds::UNBOUNDED))
+            }
+            Self::Stiffness => ("stiffness", "k", (force.per(position), Bounds::UNBOUNDED)),
+            Self::Gravity => ("gravity_sine", "A", of_force()),
+            Self::GravityCosine => ("gravity_cosine", "B", of_force()),
+            Self::Asymmetry => ("asymmetry", "a", (Unit::default(), Bounds::UNBOUNDED.at_least(-1.0).at_most(1.0))),
+            Self::LoadOffset => ("load_offset", "N₀", (Unit::of("N"), Bounds::UNBOUNDED)),
+            _ => return None,
+        };
+        Some(Parameter::named(name, symbol, unit.to_string()).bounded(bounds))
     }
 }
 
@@ -148,8 +241,9 @@ pub(crate) const QUADRATIC: &str = "quadratic_damping_per_mass";
 const POWERS: Bounds = Bounds::UNBOUNDED.at_least(1.0).at_most(5.0);
 
 impl Terms {
-    /// No term but the law, and nothing held.
-    pub(crate) const NONE: Self = Self { has: [false; Term::ALL.len()], any_sign: false, held: Vec::new() };
+    /// No term but the law, and nothing fixed.
+    pub(crate) const NONE: Self =
+        Self { has: [false; Term::ALL.len()], any_sign: false, longest_delay: None, held: Vec::new() };
 
     /// The same with `term`.
     pub(crate) fn with(mut self, term: Term) -> Self {
@@ -218,18 +312,58 @@ impl Terms {
         Self { any_sign: true, ..self }
     }
 
-    /// The same with the fitted parameter called `name` held at `value`, in the unit in which it would be fitted.
+    /// The same with a delay of a force behind its motion of at most `longest` (s), positive or negative.
+    pub(crate) fn with_delay_up_to(self, longest: f64) -> Self {
+        Self { longest_delay: Some(longest), ..self.with(Term::Delay) }
+    }
+
+    /// The longest delay of a force (s) that is looked for, if it was given.
+    pub(crate) const fn longest_delay(&self) -> Option<f64> {
+        self.longest_delay
+    }
+
+    /// Refuses a term that a vibration does not have.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`] if the value is not finite. Whether there is such a parameter shows when the law is
-    /// known.
+    /// [`IdentifyError::Contradiction`].
+    pub(crate) fn require_vibration(&self) -> Result<(), IdentifyError> {
+        match self.iter().filter(|term| term.is_of_forces_alone()).find_map(Term::name) {
+            None => Ok(()),
+            Some(name) => Err(IdentifyError::contradiction(format!(
+                "{name} is a term of a force along a motion; leave it out of a law of vibrations"
+            ))),
+        }
+    }
+
+    /// Refuses a term that a force along a motion does not have.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Contradiction`].
+    pub(crate) fn require_force(&self) -> Result<(), IdentifyError> {
+        if self.has_spring() {
+            return Err(IdentifyError::contradiction(
+                "a spring that is not linear is a term of free vibrations; a force along a motion takes the term stiffness",
+            ));
+        }
+        if self.has(Term::PowerDamping) {
+            return Err(IdentifyError::contradiction(
+                "damping with a free power is a term of free vibrations; a force along a motion takes the law power_law",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The same with the fitted parameter called `name` fixed at `value`, in the unit in which it would be fitted.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`] if the value is not finite. A name that no parameter has is refused by the fit.
     pub fn holding(mut self, name: impl Into<String>, value: f64) -> Result<Self, ModelError> {
         let value = ModelError::require_finite("held value", value, "(in the unit of its parameter)")?;
         self.held.push((name.into(), value));
         Ok(self)
     }
 
-    /// No term is fitted, and nothing is held.
+    /// No term is fitted, and nothing is fixed.
     pub(crate) fn is_empty(&self) -> bool {
         *self == Self::NONE
     }
@@ -249,7 +383,7 @@ impl Terms {
         self.iter().position(|fitted| fitted == term)
     }
 
-    /// True if the spring is fitted as one that hardens or softens.
+    /// True if a term of the spring is fitted.
     pub(crate) fn has_spring(&self) -> bool {
         self.iter().any(Term::is_spring)
     }
@@ -296,12 +430,7 @@ impl Terms {
         }
     }
 
-    /// True if damping may come out negative.
-    pub(crate) const fn are_of_any_sign(&self) -> bool {
-        self.any_sign
-    }
-
-    /// True if a linear damping of the machine is fitted.
+    /// True if a linear damping is fitted.
     pub const fn has_linear_damping(&self) -> bool {
         self.has(Term::LinearDamping)
     }
@@ -311,22 +440,25 @@ impl Terms {
         self.held.iter().map(|(name, value)| (name.as_str(), *value))
     }
 
-    /// The parameters of the terms, for positions in units of `position`.
+    /// Bounds of the damping.
+    pub(crate) const fn damping_bounds(&self) -> Bounds {
+        if self.any_sign { Bounds::UNBOUNDED } else { Bounds::NOT_NEGATIVE }
+    }
+
+    /// The parameters of the terms of a vibration, for positions in units of `position`.
     pub(crate) fn parameters(&self, position: &Unit) -> impl Iterator<Item = Parameter> {
-        let damping = if self.any_sign { Bounds::UNBOUNDED } else { Bounds::NOT_NEGATIVE };
-        self.iter().map(move |term| term.parameter(position, damping))
+        self.iter().filter_map(move |term| term.parameter(position, self.damping_bounds()))
     }
 
     /// The name of `law` with these terms.
     pub(crate) fn name(&self, law: &str) -> String {
-        let mut name = law.to_owned();
-        for term in self.iter().filter_map(Term::name) {
-            name.push_str(" + ");
-            name.push_str(term);
-        }
-        if self.any_sign && self.iter().any(|term| !term.is_spring()) {
-            name.push_str(" of any sign");
-        }
+        let (of_forces, of_all): (Vec<Term>, Vec<Term>) = self.iter().partition(|term| term.is_of_forces_alone());
+        let words = |terms: &[Term]| -> String {
+            terms.iter().filter_map(|term| term.name()).flat_map(|word| [" + ", word]).collect()
+        };
+        let any_sign = self.any_sign && of_all.iter().any(|term| term.is_damping());
+        let any_sign = if any_sign { " of any sign" } else { "" };
+        let mut name = format!("{law}{}{any_sign}{}", words(&of_all), words(&of_forces));
         for (index, (held, value)) in self.held.iter().enumerate() {
             // Writing to a string cannot fail.
             let _ = write!(name, "{} {held} = {value}", if index == 0 { "," } else { " and" });

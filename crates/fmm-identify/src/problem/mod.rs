@@ -10,16 +10,18 @@ use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::error::IdentifyError;
 use crate::experiment::sight::{Seen, Sight};
-use crate::experiment::{Drive, Experiment, scaled};
+use crate::experiment::{Drive, Experiment, Experiments, scaled};
 use crate::law::naming::Units;
 use crate::law::{Law, Motion, Simulate};
 use crate::machine::terms::Term;
 use crate::machine::{Machine, Scale, Terms};
+use crate::problem::force::Forces;
 use crate::quantities::prior::Prior;
 use crate::quantities::table::{Place, Table};
 
 mod declared;
 pub(crate) mod fitted;
+pub(crate) mod force;
 pub(crate) mod friction_curve;
 mod motion;
 mod parts;
@@ -55,6 +57,8 @@ pub struct Problem<'a> {
     is_complete: bool,
     /// Values with which a fit begins, where they are declared.
     declared: Vec<f64>,
+    /// Forces along motions in place of the experiments.
+    forces: Option<Forces<'a>>,
 }
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
@@ -68,7 +72,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// [`IdentifyError::Missing`] and [`IdentifyError::WrongRecord`].
-    pub fn new<F: LawFamily>(machine: Machine, experiments: &'a [Experiment]) -> Result<Self, IdentifyError> {
+    pub fn new<F: LawFamily>(machine: Machine, experiments: impl Into<Experiments<'a>>) -> Result<Self, IdentifyError> {
         Self::with_terms::<F>(machine, Terms::NONE, experiments)
     }
 
@@ -80,7 +84,7 @@ impl<'a> Problem<'a> {
     pub fn with_terms<F: LawFamily>(
         machine: Machine,
         terms: Terms,
-        experiments: &'a [Experiment],
+        experiments: impl Into<Experiments<'a>>,
     ) -> Result<Self, IdentifyError> {
         Self::of(Law::of::<F>(), machine, terms, experiments)
     }
@@ -89,8 +93,12 @@ impl<'a> Problem<'a> {
         law: Law,
         machine: Machine,
         terms: Terms,
-        experiments: &'a [Experiment],
+        experiments: impl Into<Experiments<'a>>,
     ) -> Result<Self, IdentifyError> {
+        let experiments = match experiments.into() {
+            Experiments::Vibrations(experiments) => experiments,
+            Experiments::Forces(records) => return Self::of_forces(law, machine, &terms, records),
+        };
         require_together(&machine, experiments)?;
         let (table, parameters) = Table::of(law, &machine, terms, experiments)?;
         Ok(Self::by(machine, Cow::Borrowed(experiments), table, parameters))
@@ -101,7 +109,7 @@ impl<'a> Problem<'a> {
         // Forces that one hammer measures share its calibration.
         let calibration = |index: usize| {
             let row = table.rows[index];
-            let drive = row.record.and_then(|record| experiments[record].drive());
+            let drive = row.record.and_then(|record| experiments.get(record)?.drive());
             drive.filter(|_| row.place == Place::DriveGain).map_or(0.0, Drive::calibration_uncertainty)
         };
         let prior = Prior::of(&table.rows, |i, j| calibration(i) * calibration(j));
@@ -121,6 +129,7 @@ impl<'a> Problem<'a> {
             euler: None,
             is_complete: false,
             declared: Vec::new(),
+            forces: None,
         };
         problem.blocks = problem.blocks_of_records();
         problem
@@ -188,7 +197,7 @@ impl<'a> Problem<'a> {
 
     /// Number of residuals of records; those of prior knowledge follow.
     pub(crate) fn measured(&self) -> usize {
-        self.experiments.iter().map(Experiment::rows).sum()
+        self.row_ranges().map(|rows| rows.len()).sum()
     }
 
     /// The same problem without residuals of what is known beforehand.
@@ -322,10 +331,11 @@ impl<'a> Problem<'a> {
 
     /// The rows of each record among the residuals.
     pub(crate) fn row_ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        let records = self.blocks.len() - usize::from(self.prior.len() > 0);
         let mut end = 0;
-        self.experiments.iter().map(move |experiment| {
+        self.blocks[..records].iter().map(move |block| {
             let begin = end;
-            end += experiment.rows();
+            end += block.rows();
             begin..end
         })
     }

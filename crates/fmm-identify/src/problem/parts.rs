@@ -100,6 +100,7 @@ impl Problem<'_> {
             euler: self.euler,
             is_complete: self.is_complete,
             declared: self.declared.clone(),
+            forces: None,
         };
         problem.blocks = problem.blocks_of_records();
         problem
@@ -109,7 +110,7 @@ impl Problem<'_> {
     /// where one that only this problem has is held.
     pub(crate) fn recast(&self) -> Option<Problem<'_>> {
         let recast = (self.law().recast)()?;
-        Problem::of(recast.family, self.machine, self.terms().clone(), &self.experiments).ok()
+        Problem::of(recast.family, self.machine, self.terms().clone(), &*self.experiments).ok()
     }
 
     /// The values of this problem where those of the [recast](Self::recast) one have been `found`.

@@ -219,6 +219,9 @@ impl Residuals for Problem<'_> {
     }
 
     fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        if let Some(forces) = self.forces() {
+            return forces.evaluate(p, residuals, jacobian);
+        }
         let (measured, known) = residuals.split_at_mut(self.measured());
         self.prior.write_residuals(p, self.noise, known);
         let mut rest = measured;
@@ -252,6 +255,9 @@ impl Residuals for Problem<'_> {
     }
 
     fn is_cheaper_combined(&self) -> bool {
+        if let Some(forces) = self.forces() {
+            return forces.is_cheaper_combined();
+        }
         // Two directions cost about as much as none, more of them several times as much.
         self.euler.is_none() && (0..self.parameters.len()).filter(|index| self.is_wanted(*index)).count() <= FEW
     }

@@ -246,9 +246,9 @@ impl Problem<'_> {
             Term::QuadraticDamping | Term::PowerDamping => 0.1 * (damping + friction / speed) / speed,
             Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),
             Term::PowerExponent => 2.0,
-            Term::CubicSpring | Term::QuinticSpring | Term::Gap => 0.0,
             Term::Stop => 0.5 * length,
             Term::StopRatio => 1.0,
+            _ => 0.0,
         }));
         let scales = Scales { length, speed, friction, damping, sharpness };
         start.extend(self.law().fitted().map(|parameter| match (parameter.role(), excess) {

@@ -105,11 +105,8 @@ impl Inputs<'_> {
             let mut value = law_value(i);
             if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
-                derived.push(if self.table.is_per_mass() {
-                    (units.stated(law_parameter, Level::PerMass), value / gain)
-                } else {
-                    (units.stated(law_parameter, Level::Force), value * by_force)
-                });
+                let stated = units.stated(law_parameter, self.table.coordinates.level());
+                derived.push((stated, if self.table.is_per_mass() { value / gain } else { value * by_force }));
             }
             let Some(force) = to_force.map(|to_force| value * to_force) else { continue };
             let stated = |level: Level| metric.stated(law_parameter, level);

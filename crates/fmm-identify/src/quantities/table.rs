@@ -61,6 +61,10 @@ pub(crate) enum Place {
     Offset,
     Disturbance(usize),
     Corner,
+    /// Share of a channel that was measured beside a force, by its number.
+    Channel(usize),
+    /// Deflection of the bristles at the beginning of a force along a motion.
+    Deflection,
 }
 
 /// Row of the table beside its [`Parameter`], which has name, symbol, unit and bounds.
@@ -81,6 +85,17 @@ pub(crate) enum Coordinates {
     Forces,
     /// Mass, stiffness, damping and normal load as they are declared, and the law by its own coefficients.
     Coefficients,
+}
+
+impl Coordinates {
+    /// Meaning of the level of a law.
+    pub(crate) const fn level(self) -> Level {
+        match self {
+            Self::PerMass => Level::PerMass,
+            Self::Forces => Level::Force,
+            Self::Coefficients => Level::Coefficient,
+        }
+    }
 }
 
 /// Rows of a problem in their order: oscillator, terms beside the law, law, then for each record its initial state, its
@@ -105,23 +120,23 @@ pub(crate) struct Table {
     /// First row of each record.
     pub(crate) own: Vec<usize>,
     /// Rows of each record on which its motion depends; they come first.
-    of_motion: Vec<usize>,
+    pub(super) of_motion: Vec<usize>,
 }
 
 /// Rows and parameters while they are collected.
 #[derive(Default)]
-struct Builder {
-    rows: Vec<Row>,
-    parameters: Vec<Parameter>,
+pub(super) struct Builder {
+    pub(super) rows: Vec<Row>,
+    pub(super) parameters: Vec<Parameter>,
 }
 
 impl Builder {
-    fn push(&mut self, place: Place, record: Option<usize>, parameter: Parameter, knowledge: Knowledge) {
+    pub(super) fn push(&mut self, place: Place, record: Option<usize>, parameter: Parameter, knowledge: Knowledge) {
         self.rows.push(Row { place, record, knowledge });
         self.parameters.push(parameter);
     }
 
-    fn free(&mut self, place: Place, parameter: Parameter) {
+    pub(super) fn free(&mut self, place: Place, parameter: Parameter) {
         self.push(place, None, parameter, Knowledge::Free);
     }
 }
@@ -270,6 +285,7 @@ impl Table {
         experiments: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
         family.require_units()?;
+        terms.require_vibration()?;
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::two_dampings(family.name));
         }
@@ -282,11 +298,7 @@ impl Table {
         let is_declared = coordinates == Coordinates::Coefficients;
         let family = if is_driven || is_declared { family.with_breakaway() } else { family };
         let units = Units::of(reference.record());
-        let level = match coordinates {
-            Coordinates::PerMass => Level::PerMass,
-            Coordinates::Forces => Level::Force,
-            Coordinates::Coefficients => Level::Coefficient,
-        };
+        let level = coordinates.level();
         let mut rows = Builder::default();
         oscillator(machine, experiments, coordinates, &mut rows);
         let oscillator = rows.rows.len();
@@ -314,13 +326,13 @@ impl Table {
     }
 
     /// Fixes what the terms fix, and narrows the bounds of all fixed rows.
-    fn settle(&mut self, parameters: &mut [Parameter]) -> Result<(), IdentifyError> {
+    pub(super) fn settle(&mut self, parameters: &mut [Parameter]) -> Result<(), IdentifyError> {
         for (name, value) in self.terms.held() {
             let known = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
             let Some(index) = parameters.iter().position(|parameter| parameter.name() == name) else {
                 let law = self.family.name;
                 return Err(IdentifyError::UnknownName {
-                    what: format!("{law} has no parameter called {name:?} to hold; its parameters are: {}", known()),
+                    what: format!("{law} has no parameter called {name:?} to fix; its parameters are: {}", known()),
                 });
             };
             self.rows[index].knowledge = Knowledge::Fixed(value);

@@ -49,15 +49,19 @@ fn write_sources(f: &mut fmt::Formatter<'_>, finding: &Finding) -> fmt::Result {
 impl fmt::Display for Identification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let fit = self.fit();
-        writeln!(f, "Fit by the law {}", self.law())?;
+        let title = if self.force_unit().is_some() { "Force along a motion by" } else { "Fit by the law" };
+        writeln!(f, "{title} {}", self.law())?;
+        let unit = self.force_unit().map_or_else(String::new, |unit| format!(" {unit}"));
+        let share = self.share_of_force().map(|share| format!(", {:.1} % of the force", 100.0 * share));
         writeln!(
             f,
-            "  {}; {} samples, rank {} of {}, rms residual {:.4e}",
+            "  {}; {} samples, rank {} of {}, rms residual {:.4e}{unit}{}",
             fit.outcome(),
-            fit.residuals().len(),
+            self.samples(),
             fit.rank(),
             fit.free_count(),
-            self.rms_residual()
+            self.rms_residual(),
+            share.unwrap_or_default()
         )?;
         self.write_findings(f, &[])?;
         write_warnings(f, self.warnings())
@@ -91,7 +95,14 @@ impl Comparison {
             (false, true) => "a law that was tried could not be fitted to the end".to_owned(),
             (false, false) => format!("the record does not decide: {} may be true as well", others.join(", ")),
         };
-        let surer = if !is_explained {
+        let surer = if preferred.force_unit().is_some() {
+            match (is_explained, is_alone, self.is_decided()) {
+                (false, ..) => "a law or a term that was not tried may",
+                (_, true, _) => "a comparison with other laws would show whether the record asks for this one",
+                (.., true) => "more passes or less noise would make it surer",
+                _ => "motions of other speeds and amplitudes, or less noise, would tell the laws apart",
+            }
+        } else if !is_explained {
             "a law that was not tried, a spring that is not linear or a second mode may"
         } else if is_alone {
             "a comparison with other laws would show whether the record asks for this one"
@@ -114,16 +125,19 @@ impl fmt::Display for Comparison {
         writeln!(f, "\nLaws")?;
         let width = self.identifications().iter().map(|law| law.law().len()).max().unwrap_or(0);
         let best = self.scores().iter().copied().fold(f64::INFINITY, f64::min);
-        writeln!(f, "  {:<width$}  rms residual  rank  half swings    rest from   misfit + 2 rank         p", "")?;
+        let is_of_force = self.preferred().force_unit().is_some();
+        let motion = if is_of_force { "" } else { "  half swings    rest from" };
+        writeln!(f, "  {:<width$}  rms residual  rank{motion}   misfit + 2 rank         p", "")?;
         let standings = self.scores().iter().copied().zip(self.p_values().iter().copied());
         for (law, (score, p)) in self.identifications().iter().zip(standings) {
             let stop = law.motions().iter().find_map(crate::identification::FittedMotion::stop_time);
             let stop = stop.map_or_else(|| "-".to_owned(), |time| format!("{time:.4} s"));
             let half_swings: usize = law.motions().iter().map(crate::identification::FittedMotion::half_swings).sum();
+            let motion = if is_of_force { String::new() } else { format!("  {half_swings:>11}  {stop:>11}") };
             let p = if p < EXCLUDED { "excluded".to_owned() } else { format!("{p:.3}") };
             writeln!(
                 f,
-                "  {:<width$}  {:>12.4e}  {:>4}  {half_swings:>11}  {stop:>11}  {:>16.1}  {p:>8}",
+                "  {:<width$}  {:>12.4e}  {:>4}{motion}  {:>16.1}  {p:>8}",
                 law.law(),
                 law.rms_residual(),
                 law.fit().rank(),

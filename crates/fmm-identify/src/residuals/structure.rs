@@ -2,7 +2,8 @@
 
 use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 
-use crate::experiment::{Experiment, scaled};
+use crate::experiment::force::{ForceRecord, deviation};
+use crate::experiment::{Experiments, scaled};
 use crate::finding::Source;
 use crate::linear_algebra::inverse_of_products;
 use crate::problem::Problem;
@@ -27,7 +28,14 @@ pub(crate) struct ResidualStructure {
 }
 
 impl ResidualStructure {
-    pub(crate) fn of(fit: &Fit, decays: &[Experiment]) -> Self {
+    pub(crate) fn of<'a>(fit: &Fit, experiments: impl Into<Experiments<'a>>) -> Self {
+        let decays = match experiments.into() {
+            Experiments::Vibrations(decays) => decays,
+            Experiments::Forces(records) => {
+                let noise = records.iter().map(ForceRecord::noise).fold(0.0, f64::max);
+                return Self::beside(fit, noise, ROUNDING_OF_RECORD * deviation(records));
+            }
+        };
         let rounding = scaled(decays)
             .map(|(decay, weight)| ROUNDING_OF_RECORD * weight * decay.summary().amplitudes.0)
             .fold(0.0, f64::max);
@@ -38,7 +46,7 @@ impl ResidualStructure {
     }
 
     /// The structure of a fit to series with this `noise` and `rounding`, in the unit of the residuals.
-    pub(crate) fn beside(fit: &Fit, noise: f64, rounding: f64) -> Self {
+    fn beside(fit: &Fit, noise: f64, rounding: f64) -> Self {
         let residual = (fit.sum_of_squares() / fit.residuals().len() as f64).sqrt();
         let autocorrelation_time = autocorrelation_time(fit.residuals()).unwrap_or(1.0);
         Self { residual, noise: noise.max(rounding), rounding, autocorrelation_time, has_lines: false }
@@ -221,17 +229,29 @@ impl Covariance {
         let series: Vec<Series<'_>> = problem
             .row_ranges()
             .enumerate()
-            .map(|(record, rows)| Series {
-                rows,
-                signal: structure.is_noisy().then_some(signals[record].as_slice()),
-                period: problem.experiments()[record].record().rate()
-                    / problem.experiments()[record].guess().frequency(),
-                columns,
-                weights,
-                plateaus: problem.experiments()[record].stays(),
+            .map(|(record, rows)| match problem.forces() {
+                Some(forces) => {
+                    let period = forces.records()[record].period();
+                    Series { rows, signal: None, period, columns, weights, plateaus: Vec::new() }
+                }
+                None => Series {
+                    rows,
+                    signal: structure.is_noisy().then_some(signals[record].as_slice()),
+                    period: problem.experiments()[record].record().rate()
+                        / problem.experiments()[record].guess().frequency(),
+                    columns,
+                    weights,
+                    plateaus: problem.experiments()[record].stays(),
+                },
             })
             .collect();
         ResidualNoise::of(fit.residuals(), &series)
+    }
+
+    /// This covariance with all variances `factor` times as large.
+    pub(crate) fn times(mut self, factor: f64) -> Self {
+        self.elements.iter_mut().flatten().for_each(|element| *element *= factor);
+        self
     }
 
     /// Covariance of parameters `i` and `j`; `None` for those that the record does not determine, or on a bound.

@@ -1,11 +1,18 @@
 //! Forces along motions: every law comes back out of what it makes of a motion, with its uncertainty.
 
-use fmm_friction::{BristleLaw, Dahl, FamilyVisitor, LawFamily, LawVisitor, SlidingLaw, family_named};
-use fmm_identify::{ForceModel, ForceRecord, IdentifyError, Warning, compare_force, identify_force};
+use fmm_friction::{BristleLaw, Coulomb, Dahl, FamilyVisitor, LawFamily, LawVisitor, SlidingLaw, family_named};
+use fmm_identify::{
+    Candidate, ForceRecord, Identification, IdentifyError, Known, Machine, NestedTest, Warning, compare, identify,
+};
 use fmm_sim::{FrictionPoint, PrescribedMotion, State, friction_along};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
+
+/// The identification of `records` by the model called `name`.
+fn identified(name: &str, records: &[ForceRecord]) -> Result<Identification, IdentifyError> {
+    Candidate::named(name)?.identify(&Machine::per_unit_mass(), records)
+}
 
 /// A motion: to and fro with a second, quicker part.
 fn motion(time: f64) -> State {
@@ -184,7 +191,7 @@ fn each_law_comes_back() {
     let (mut held, mut stated) = (0, 0);
     for (name, fixed, values, truths) in CASES {
         let truth = Truth::of(name, values);
-        let mut model = ForceModel::named(name).unwrap().with_zero().with_delay();
+        let mut model = Candidate::named(&format!("{name} + zero + delay")).unwrap();
         for (parameter, value) in *fixed {
             model = model.holding(parameter, *value).unwrap();
         }
@@ -193,7 +200,7 @@ fn each_law_comes_back() {
         let truths: Vec<(&str, f64)> = truths.iter().copied().chain([("zero", ZERO), ("delay", DELAY)]).collect();
         let (mut inside, mut squares) = (vec![(0, 0); truths.len()], 0.0f64);
         for seed in 0..records {
-            let found = identify_force(&model, &[truth.record(seed)]).unwrap();
+            let found = model.identify(&Machine::per_unit_mass(), &[truth.record(seed)]).unwrap();
             squares += found.rms_residual().powi(2) / records as f64;
             for (count, (parameter, truth)) in inside.iter_mut().zip(&truths) {
                 let finding = found.finding(parameter).unwrap_or_else(|| panic!("{parameter} of {found}"));
@@ -244,9 +251,8 @@ fn what_stands_beside_friction_is_told_from_it() {
         .and_then(|record| record.with_accelerations(&accelerations))
         .and_then(|record| record.under_loads(&loads))
         .unwrap();
-    let model = ForceModel::named("coulomb + quadratic").unwrap();
-    let model = model.with_inertia().with_stiffness().with_asymmetry().with_load_offset().with_zero();
-    let found = identify_force(&model, std::slice::from_ref(&record)).unwrap();
+    let model = "coulomb + quadratic + inertia + stiffness + asymmetry + load_offset + zero";
+    let found = identified(model, std::slice::from_ref(&record)).unwrap();
     let wanted =
         [("coefficient", 0.2), ("asymmetry", 0.1), ("load_offset", 7.0), ("quadratic_damping", 12.0), ("inertia", 3.0)];
     for (name, truth) in wanted {
@@ -257,7 +263,7 @@ fn what_stands_beside_friction_is_told_from_it() {
     let stiffness = found.finding("stiffness").unwrap().value();
     assert!((stiffness - 402.0).abs() < 0.1, "{stiffness} N/m");
     // The same model says a record to which it was not fitted, and says which it is.
-    let said = found.validate_on(&record).unwrap();
+    let said = found.validate(&record).unwrap();
     assert!(
         said.share().unwrap() < 1e-3 && (said.rms - found.rms_residual()).abs() < 1e-2 * said.rms.max(1e-9),
         "{said:?}"
@@ -275,7 +281,7 @@ fn a_rest_is_no_sliding() {
     let mut force = |time: &f64| if velocity(*time) == 0.0 { 6.0 * (time - 1.0) } else { 4.0 + 0.01 * noise() };
     let forces: Vec<f64> = times.iter().map(&mut force).collect();
     let record = ForceRecord::of_velocities(&times, &velocities, &forces).unwrap();
-    let found = identify_force(&ForceModel::named("coulomb_static").unwrap(), std::slice::from_ref(&record)).unwrap();
+    let found = identified("coulomb_static", std::slice::from_ref(&record)).unwrap();
     let level = found.finding("sliding_friction_force").unwrap();
     assert!((level.value() - 4.0).abs() < 1e-3, "{found}");
     // 2000 of the 3000 samples count: σ/√2000.
@@ -286,7 +292,7 @@ fn a_rest_is_no_sliding() {
     assert!(said[1500].is_none() && said[500].is_some());
     // Of a record that only rests nothing is said.
     let resting = record.resting_up_to(1.0).unwrap();
-    assert!(matches!(found.validate_on(&resting), Err(IdentifyError::NotSeen { .. })));
+    assert!(matches!(found.validate(&resting), Err(IdentifyError::NotSeen { .. })));
 }
 
 /// A friction damper on a test bench (CC BY-SA 4.0, examples/data/SOURCES.md): what a fit outside of this project
@@ -302,8 +308,8 @@ fn a_damper_is_described_as_well_as_by_others() {
     }
     let record = ForceRecord::of_positions(&columns[0], &columns[1], &columns[3]).unwrap();
     let record = record.with_velocities(&columns[2]).unwrap();
-    let found = identify_force(&ForceModel::named("dahl+linear+asymmetry").unwrap(), &[record]).unwrap();
-    let share = found.rms_residual() / found.force_deviation();
+    let found = identified("dahl+linear+asymmetry", &[record]).unwrap();
+    let share = found.share_of_force().unwrap();
     assert!((0.16..0.173).contains(&share), "{share}");
     assert!(found.warnings().iter().any(|warning| warning.to_string().contains("structured")));
 }
@@ -332,8 +338,7 @@ fn a_joint_is_known_from_the_steps_of_its_encoder() {
         })
         .collect();
     let record = ForceRecord::of_positions(&times, &angles, &torques).unwrap().in_units("rad", "N m");
-    let model = ForceModel::named("berger + linear + inertia + gravity").unwrap();
-    let found = identify_force(&model, std::slice::from_ref(&record)).unwrap();
+    let found = identified("berger + linear + inertia + gravity", std::slice::from_ref(&record)).unwrap();
     let wanted = [
         ("friction_force", 1.5, 0.03),
         ("excess_friction_force", 0.8, 0.03),
@@ -349,7 +354,7 @@ fn a_joint_is_known_from_the_steps_of_its_encoder() {
     }
     assert_eq!(found.finding("inertia").unwrap().parameter().unit(), "kg m²");
     // Bristles stiffer than the steps can show do not keep a fit from being made.
-    let rigid = identify_force(&ForceModel::named("lugre + inertia + gravity").unwrap(), &[record]).unwrap();
+    let rigid = identified("lugre + inertia + gravity", &[record]).unwrap();
     assert!((rigid.finding("inertia").unwrap().value() - 0.15).abs() < 0.02, "{rigid}");
 }
 
@@ -371,19 +376,20 @@ fn the_model_behind_the_forces_wins() {
     let (positions, velocities): (Vec<f64>, Vec<f64>) =
         states.iter().map(|state| (state.position, state.velocity)).unzip();
     let record = ForceRecord::of_positions(&times, &positions, &forces).unwrap().with_velocities(&velocities).unwrap();
-    let models = |names: &[&str]| names.iter().map(|name| ForceModel::named(name).unwrap()).collect::<Vec<_>>();
+    let models = |names: &[&str]| names.iter().map(|name| Candidate::named(name).unwrap()).collect::<Vec<_>>();
+    let compare = |records: &[ForceRecord], names: &[&str]| compare(&Machine::per_unit_mass(), records, &models(names));
     let names = ["coulomb + linear", "dahl", "dahl + linear", "dahl + linear + zero", "viscous"];
-    let compared = compare_force(&models(&names), std::slice::from_ref(&record)).unwrap();
+    let compared = compare(std::slice::from_ref(&record), &names).unwrap();
     assert!(compared.is_decided(), "{compared}");
-    assert_eq!(compared.preferred().model(), "dahl + linear", "{compared}");
+    assert_eq!(compared.preferred().law(), "dahl + linear", "{compared}");
     // Dahl's law alone is a case of the two that contain it, and so on.
-    let pairs: Vec<(usize, usize)> = compared.table().tests().iter().map(|test| (test.restricted, test.full)).collect();
-    for pair in [(1, 2), (1, 3), (2, 3)] {
-        assert!(pairs.contains(&pair), "{pairs:?}");
+    for (restricted, full) in [(1, 2), (1, 3), (2, 3)] {
+        let is_meant = |test: &&NestedTest| test.restricted == names[restricted] && test.full == names[full];
+        assert!(compared.tests().iter().any(|test| is_meant(&test)), "{:?}", compared.tests());
     }
-    let twice = compare_force(&models(&["dahl", "dahl"]), std::slice::from_ref(&record));
+    let twice = compare(std::slice::from_ref(&record), &["dahl", "dahl"]);
     assert!(matches!(twice, Err(IdentifyError::Contradiction { .. })), "{twice:?}");
-    assert!(matches!(compare_force(&[], &[record]), Err(IdentifyError::Missing { .. })));
+    assert!(matches!(compare(&[record], &[]), Err(IdentifyError::Missing { .. })));
 }
 
 #[test]
@@ -398,21 +404,25 @@ fn what_is_no_record_is_refused() {
     let record = record(&times, &values, &values).unwrap();
     assert!(record.clone().under_loads(&[-1.0; 4]).is_err() && record.clone().under_loads(&[0.0; 4]).is_err());
     assert!(record.clone().under_loads(&[0.0, 1.0, 0.0, 2.0]).is_ok() && record.clone().resting_up_to(-1.0).is_err());
-    let identify = |name: &str, records: &[ForceRecord]| identify_force(&ForceModel::named(name).unwrap(), records);
-    assert!(matches!(identify("coulomb", &[]), Err(IdentifyError::Missing { .. })));
+    assert!(matches!(identified("coulomb", &[]), Err(IdentifyError::Missing { .. })));
     assert!(matches!(
-        identify("coulomb + load offset", std::slice::from_ref(&record)),
+        identified("coulomb + load offset", std::slice::from_ref(&record)),
         Err(IdentifyError::Missing { .. })
     ));
     let angles = record.clone().in_units("rad", "N m");
-    let found = identify("coulomb", std::slice::from_ref(&record)).unwrap();
+    let found = identified("coulomb", std::slice::from_ref(&record)).unwrap();
     assert!(
-        matches!(found.validate_on(&angles), Err(IdentifyError::WrongRecord { .. })) && found.predict(&record).is_ok()
+        matches!(found.validate(&angles), Err(IdentifyError::WrongRecord { .. })) && found.predict(&record).is_ok()
     );
-    assert!(matches!(identify("coulomb", &[record.clone(), angles]), Err(IdentifyError::WrongRecord { .. })));
-    assert!(matches!(identify("lugre + zero", &[record]), Err(IdentifyError::TooFew { .. })));
-    assert!(matches!(ForceModel::named("coulomb + wind"), Err(IdentifyError::UnknownName { .. })));
-    assert!(matches!(ForceModel::named("viscous + linear"), Err(IdentifyError::Contradiction { .. })));
+    assert!(matches!(identified("coulomb", &[record.clone(), angles]), Err(IdentifyError::WrongRecord { .. })));
+    assert!(matches!(identified("lugre + zero", std::slice::from_ref(&record)), Err(IdentifyError::TooFew { .. })));
+    assert!(matches!(Candidate::named("coulomb + wind"), Err(IdentifyError::UnknownName { .. })));
+    for name in ["viscous + linear", "coulomb + cubic spring", "coulomb + power"] {
+        let refused = identified(name, std::slice::from_ref(&record));
+        assert!(matches!(refused, Err(IdentifyError::Contradiction { .. })), "{name}: {refused:?}");
+    }
+    let machine = Machine::of_mass(Known::exact(1.0).unwrap()).unwrap();
+    assert!(matches!(identify::<Coulomb>(&machine, &[record]), Err(IdentifyError::Contradiction { .. })));
 }
 
 /// A brake whose force is what its two actuators hold, each with a share of its own, beside friction of its bearing.
@@ -443,14 +453,13 @@ fn what_was_measured_beside_the_force_has_a_share() {
         let read: Vec<f64> = band.iter().map(|value| value + noise(0.2)).collect();
         record = record.with_channel(name, &read, 0.011).unwrap();
     }
-    let found =
-        identify_force(&ForceModel::named("coulomb + channels").unwrap(), std::slice::from_ref(&record)).unwrap();
+    let found = identified("coulomb + channels", std::slice::from_ref(&record)).unwrap();
     for (name, truth) in [("share_of_forth", 2.05), ("share_of_back", -1.9), ("friction_force", 3.0)] {
         let value = found.finding(name).unwrap().value();
         assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value}");
     }
-    assert!(found.validate_on(&record).unwrap().share().unwrap() < 0.05);
-    let without = identify_force(&ForceModel::named("coulomb").unwrap(), std::slice::from_ref(&record)).unwrap();
+    assert!(found.validate(&record).unwrap().share().unwrap() < 0.05);
+    let without = identified("coulomb", std::slice::from_ref(&record)).unwrap();
     assert!(without.rms_residual() > 10.0 * found.rms_residual());
     assert!(record.clone().with_channel("back", &forces, 0.0).is_err(), "the same name twice");
     assert!(
@@ -458,7 +467,7 @@ fn what_was_measured_beside_the_force_has_a_share() {
             && record.with_channel("third", &forces, 9.0).is_err()
     );
     let bare = ForceRecord::of_positions(&times, &positions, &forces).unwrap();
-    let refused = identify_force(&ForceModel::named("coulomb + channels").unwrap(), &[bare]);
+    let refused = identified("coulomb + channels", &[bare]);
     assert!(matches!(refused, Err(IdentifyError::Missing { .. })), "{refused:?}");
 }
 

@@ -2,7 +2,7 @@
 
 use fmm_fit::{LinearRegression, Weighting};
 
-use crate::force::ForceRecord;
+use crate::experiment::force::ForceRecord;
 use fmm_model::Estimated;
 
 /// One cycle of a motion to and fro, from a reversal to the next but one.

@@ -2,8 +2,8 @@
 
 use fmm_fit::{Polynomial, Weighting};
 
-use crate::force::ForceRecord;
-use crate::force::speed_curve::median;
+use crate::experiment::force::ForceRecord;
+use crate::experiment::force::speed_curve::median;
 use fmm_model::Estimated;
 
 /// The onset of sliding after a rest or a reversal, as the force over the displacement from there shows it.
@@ -30,9 +30,9 @@ pub struct Onset {
 
 /// Fewest samples of the rise, and of the sliding behind it.
 const FEWEST: usize = 6;
-/// The share of the rise by which its first slope is told (1).
+/// Share of the rise over which its first slope is taken (1).
 const SLOPE: f64 = 0.5;
-/// What counts as before sliding, in units of the presliding displacement.
+/// Way before sliding, in presliding displacements (1).
 const BEFORE: f64 = 4.0;
 
 impl ForceRecord {

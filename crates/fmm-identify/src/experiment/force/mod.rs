@@ -1,10 +1,19 @@
-//! A measured force along a measured motion.
+//! Measured force along a measured motion: joints, tribometers, dampers.
+
+mod loops;
+mod onset;
+mod smoothed;
+mod speed_curve;
 
 use fmm_fit::median_deviation;
 use fmm_model::ModelError;
 
+pub use loops::ForceLoop;
+pub use onset::Onset;
+pub use speed_curve::SpeedBin;
+
 use crate::error::IdentifyError;
-use crate::force::smoothed::Smoothed;
+use crate::experiment::force::smoothed::Smoothed;
 use crate::law::along::MeasuredMotion;
 
 /// A force (or torque) measured along a motion that something outside prescribes. Samples need not be equally spaced.
@@ -24,7 +33,7 @@ pub struct ForceRecord {
     pub(crate) motion: MeasuredMotion,
     pub(crate) forces: Vec<f64>,
     pub(crate) loads: Option<Vec<f64>>,
-    /// What was measured beside the force, by name.
+    /// Channels that were measured beside the force, by name.
     pub(crate) channels: Vec<(String, Vec<f64>)>,
     position_unit: String,
     force_unit: String,
@@ -32,7 +41,7 @@ pub struct ForceRecord {
 
 /// Fewest samples of a record: a parabola through three gives the velocity.
 const FEWEST_SAMPLES: usize = 3;
-/// Share of the largest speed up to which a contact is taken to rest unless it is said otherwise (1).
+/// Share of the largest speed up to which a contact is taken to rest by default (1).
 const REST: f64 = 1e-3;
 
 impl ForceRecord {
@@ -56,7 +65,7 @@ impl ForceRecord {
     /// these are the sum of the velocities, from 0.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions).
+    /// Those of [`of_positions`](Self::of_positions).
     pub fn of_velocities(times: &[f64], velocities: &[f64], forces: &[f64]) -> Result<Self, IdentifyError> {
         require_times(times)?;
         require_series(times, velocities, "velocity", "m/s")?;
@@ -70,7 +79,7 @@ impl ForceRecord {
         Self::along(times, positions, forces).moving_at(velocities)
     }
 
-    /// The record of forces along a motion whose velocities are said later.
+    /// Forces along a motion without velocities yet.
     fn along(times: &[f64], positions: Vec<f64>, forces: &[f64]) -> Self {
         let motion = MeasuredMotion { times: times.to_vec(), positions, ..MeasuredMotion::default() };
         let (position_unit, force_unit) = ("m".to_owned(), "N".to_owned());
@@ -89,10 +98,10 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// The same with measured `velocities` (m/s), as they are; accelerations are the slopes of their cubics.
+    /// This record with measured `velocities` (m/s), as they are; accelerations are the slopes of their cubics.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for velocities that go with
+    /// Those of [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for velocities that go with
     /// the slope of the positions, but are more than three times or less than a third of it, or of the other sign.
     pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, velocities, "velocity", "m/s")?;
@@ -118,20 +127,20 @@ impl ForceRecord {
         Ok(())
     }
 
-    /// The same with measured `accelerations` (m/s²).
+    /// This record with measured `accelerations` (m/s²).
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions).
+    /// Those of [`of_positions`](Self::of_positions).
     pub fn with_accelerations(mut self, accelerations: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, accelerations, "acceleration", "m/s²")?;
         self.motion.accelerations = accelerations.to_vec();
         Ok(self)
     }
 
-    /// The same with a measured normal load (N) at every sample, so that the levels of a law are coefficients.
+    /// This record with a measured normal load (N) at every sample, so that the levels of a law are coefficients.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions), and for a load that is negative or zero throughout.
+    /// Those of [`of_positions`](Self::of_positions), and for a load that is negative or zero throughout.
     pub fn under_loads(mut self, loads: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, loads, "normal load", "N")?;
         for load in loads {
@@ -143,13 +152,13 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// The same with `values` of a channel called `name` that was measured beside the force, of which the force holds a
+    /// This record with `values` of a channel called `name` that was measured beside the force, of which the force holds a
     /// share: the actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged over
     /// `seconds` around each sample, by the cubic of least squares; with 0 the values stay as they are. Noise that is
     /// left in them makes shares a little too small.
     ///
     /// # Errors
-    /// As for [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a
+    /// Those of [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a
     /// time that is neither 0 nor between five samples and the whole record.
     pub fn with_channel(mut self, name: &str, values: &[f64], seconds: f64) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, values, "channel", "of a force")?;
@@ -173,8 +182,8 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// The same taken to be at rest up to `speed` (m/s): there a law that leaps does not say friction. It is a
-    /// thousandth of the largest speed unless it is given.
+    /// This record taken to be at rest up to `speed` (m/s), where a law that leaps has no value of friction. The default
+    /// is a thousandth of the largest speed.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] if the speed is negative or not finite.
@@ -183,19 +192,19 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// The same in other units than m and N, such as `"rad"` and `"N m"`: the numbers stay as they are.
+    /// This record in other units than m and N, such as `"rad"` and `"N m"`: the numbers stay as they are.
     #[must_use]
     pub fn in_units(mut self, position: &str, force: &str) -> Self {
         (self.position_unit, self.force_unit) = (position.to_owned(), force.to_owned());
         self
     }
 
-    /// How many samples there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.motion.times.len()
     }
 
-    /// Whether there are none, which does not occur.
+    /// True for a record without samples, which cannot be made.
     pub fn is_empty(&self) -> bool {
         self.motion.times.is_empty()
     }
@@ -289,6 +298,14 @@ impl ForceRecord {
         }
         2.0 * self.len() as f64 / f64::from(reversals + 1)
     }
+}
+
+/// Standard deviation of the forces of all `records`, in their unit.
+pub(crate) fn deviation(records: &[ForceRecord]) -> f64 {
+    let forces = || records.iter().flat_map(ForceRecord::forces);
+    let count = forces().count() as f64;
+    let mean = forces().sum::<f64>() / count;
+    (forces().map(|force| (force - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 fn require_times(times: &[f64]) -> Result<(), IdentifyError> {

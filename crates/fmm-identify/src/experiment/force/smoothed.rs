@@ -1,4 +1,4 @@
-//! A series at unequal times, with its noise averaged, and its slope.
+//! Series at unequal times with its noise averaged, and its slope.
 
 /// Values and slopes of a series by cubics through each sample and its neighbours.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,15 +10,14 @@ pub(crate) struct Smoothed {
 
 /// Neighbours to either side that are tried, the fewest first.
 const WIDTHS: [usize; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
-/// What cubics leave of a series grows with the fourth power of the neighbours where they do not follow it, and not at
-/// all where it is white noise; up to this power it is taken for noise. Steps, which stay while the series is slow, lie
+/// Power of the number of neighbours with which the rest that cubics leave may grow and still be noise (1). Where cubics
+/// do not follow the series it grows with the fourth power, for white noise not at all; the steps of a converter lie
 /// between.
 const GROWTH: f64 = 0.7;
-/// Samples, spread over the series, by which that is decided.
+/// Most samples, spread over the series, by which the number of neighbours is chosen.
 const LOOKED_AT: usize = 2000;
 
-/// A cubic through neighbours: value and slope at the sample, and the squares that it leaves, over its degrees of
-/// freedom.
+/// Cubic through neighbours: value and slope at the sample, and the variance of its residuals.
 struct Cubic {
     value: f64,
     slope: f64,
@@ -26,8 +25,8 @@ struct Cubic {
 }
 
 impl Smoothed {
-    /// That of `values` at `times` (s), at least three, which ascend. A series without noise stays as it is, and has
-    /// the slopes of the parabola through a sample and its neighbours.
+    /// Smoothes `values` at ascending `times` (s), at least three. A series without noise stays unchanged, with the
+    /// slopes of the parabola through a sample and its neighbours.
     pub(crate) fn of(times: &[f64], values: &[f64]) -> Self {
         let count = times.len();
         let stride = count.div_ceil(LOOKED_AT);
@@ -52,8 +51,7 @@ impl Smoothed {
         chosen.and_then(|width| Self::by_cubics(times, values, width)).unwrap_or_else(plain)
     }
 
-    /// That of `values` by cubics through `width` neighbours to either side; `None` if there are not enough samples for
-    /// that.
+    /// Smoothes `values` by cubics through `width` neighbours to either side; `None` if the samples are too few.
     pub(crate) fn by_cubics(times: &[f64], values: &[f64], width: usize) -> Option<Self> {
         let count = times.len();
         let is_enough = width >= WIDTHS[0] && 2 * width < count;
@@ -89,8 +87,8 @@ fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic
         square += y * y;
     }
     let right = normal.map(|row| row[ORDER]);
-    // Positive definite: no pivot need be looked for. Four rows are eliminated here, once a sample and a width that is
-    // tried; nalgebra would be a dependency of the crate for these lines alone.
+    // Positive definite: no pivot need be looked for. Columns that are alike to 1e-10, as a gap in the times makes them,
+    // determine a cubic all the same; the inverse of linear_algebra.rs would leave one of them out.
     for pivot in 0..ORDER {
         if normal[pivot][pivot] <= 1e-14 {
             return None;

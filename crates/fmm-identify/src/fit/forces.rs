@@ -1,14 +1,18 @@
-//! Start values of a fit of forces along motions.
+//! Fit of forces along motions: start values, and the best end of the fits from them.
 
-use fmm_fit::{EvaluationError, Residuals};
+use fmm_fit::{EvaluationError, Fit, Options, solve_observed};
 use fmm_friction::Role;
 
-use crate::force::ForceRecord;
-use crate::force::problem::ForceProblem;
+use crate::error::IdentifyError;
+use crate::experiment::force::ForceRecord;
+use crate::fit::stages::Observer;
 use crate::law::dimension::{Scales, is_force};
 use crate::linear_algebra::inverse_of_products;
+use crate::problem::Problem;
+use crate::problem::force::ForceProblem;
+use crate::residuals::structure::ResidualStructure;
 
-/// How much more sharply a law may bend than it typically does in a free vibration.
+/// Sharpness of the bends of a law over the typical one in a free vibration (1).
 const SHARPNESS: [f64; 7] = [1.0, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0];
 /// Delays that are looked at, to either side of none.
 const DELAYS: i32 = 20;
@@ -17,12 +21,49 @@ const LARGEST_FALL: f64 = 0.9;
 /// Starts that are fitted, the nearest to the records first.
 const MOST_STARTS: usize = 3;
 
-/// Values to begin a fit of `problem` with, the nearest to the records first.
-pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
-    let law = problem.law();
+/// Iterations after which a fit that has not ended creeps.
+const MOST_ITERATIONS: usize = 100;
+
+/// The best fit of a `problem` of these `forces`. A fit that leaves only noise ends the search.
+pub(crate) fn fit_forces(
+    problem: &Problem<'_>,
+    forces: &ForceProblem<'_>,
+    options: &Options,
+    observer: &mut Observer<'_>,
+) -> Result<Fit, IdentifyError> {
+    let (law, records) = (forces.law(), forces.records());
+    let options = options.clone().with_max_iterations(options.max_iterations().min(MOST_ITERATIONS));
+    let beginnings: Option<Vec<ForceRecord>> = records.iter().map(ForceRecord::beginning).collect();
+    let begun = match &beginnings {
+        Some(beginnings) => {
+            let terms = problem.table().terms.clone();
+            Some(Problem::of(*law, *problem.machine(), terms, beginnings)?)
+        }
+        None => None,
+    };
+    let begun = begun.as_ref().unwrap_or(problem);
+    let found = begun.forces().map_or_else(|| Ok(Vec::new()), |forces| starts(&forces));
+    let mut best: Option<Fit> = None;
+    for start in found.map_err(|error| IdentifyError::simulation(law.name, error))? {
+        let fit = solve_observed(problem, &start, &options, |progress| observer(progress))
+            .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
+        let is_noise = !ResidualStructure::of(&fit, records).is_structured();
+        if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) {
+            best = Some(fit);
+        }
+        if is_noise && best.as_ref().is_some_and(|best| best.outcome().is_success()) {
+            break;
+        }
+    }
+    best.ok_or_else(|| IdentifyError::missing("a model without a parameter cannot be fitted"))
+}
+
+/// Values to begin a fit of `forces` with, the nearest to the records first.
+fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
+    let law = forces.law();
     let mut positions = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut speed, mut load, mut count): (f64, f64, usize) = (0.0, 0.0, 0);
-    for record in problem.records() {
+    for record in forces.records() {
         for position in record.positions() {
             positions = (positions.0.min(*position), positions.1.max(*position));
         }
@@ -30,7 +71,7 @@ pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, Evalua
         load += record.loads.as_ref().map_or(record.len() as f64, |loads| loads.iter().sum());
         count += record.len();
     }
-    let friction = level(problem) * count as f64 / load.max(f64::MIN_POSITIVE);
+    let friction = level(forces) * count as f64 / load.max(f64::MIN_POSITIVE);
     let length = 0.5 * (positions.1 - positions.0);
     // A tenth of the force at the highest speed is viscous.
     let scales = |sharpness| Scales { length, speed, friction, damping: 0.1 * friction / speed, sharpness };
@@ -38,19 +79,19 @@ pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, Evalua
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     for sharpness in SHARPNESS.into_iter().take(if has_bends { SHARPNESS.len() } else { 1 }) {
         let mut values: Vec<f64> = law.fitted().map(|parameter| scales(sharpness).typical(law, parameter)).collect();
-        values.resize(problem.parameters().len(), 0.0);
-        for (place, deflection) in problem.first_deflections() {
+        values.resize(forces.parameters().len(), 0.0);
+        for (place, deflection) in forces.first_deflections() {
             values[place] = deflection;
         }
-        for (value, parameter) in values.iter_mut().zip(problem.parameters()) {
+        for (value, parameter) in values.iter_mut().zip(forces.parameters()) {
             *value = parameter.bounds().clamp(*value);
         }
-        found.push(levelled(problem, values)?);
+        found.push(levelled(forces, values)?);
     }
     let nearest = |found: &mut Vec<(f64, Vec<f64>)>| found.sort_by(|a, b| a.0.total_cmp(&b.0));
     nearest(&mut found);
-    if let Some(place) = problem.delay().filter(|place| !problem.parameters()[*place].bounds().is_fixed()) {
-        let longest = problem.parameters()[place].bounds().upper();
+    if let Some(place) = forces.delay().filter(|place| !forces.parameters()[*place].bounds().is_fixed()) {
+        let longest = forces.parameters()[place].bounds().upper();
         // First over all delays, then between those that are looked at: where friction jumps, no derivative leads
         // there.
         for width in [longest, longest / f64::from(DELAYS)] {
@@ -58,8 +99,8 @@ pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, Evalua
             for step in (-DELAYS..=DELAYS).filter(|step| *step != 0) {
                 let mut values = best.clone();
                 values[place] += width * f64::from(step) / f64::from(DELAYS + 1);
-                if problem.parameters()[place].bounds().contains(values[place]) {
-                    found.push(levelled(problem, values)?);
+                if forces.parameters()[place].bounds().contains(values[place]) {
+                    found.push(levelled(forces, values)?);
                 }
             }
             nearest(&mut found);
@@ -70,10 +111,10 @@ pub(crate) fn starts(problem: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, Evalua
 }
 
 /// Half the difference between the mean forces of the two directions.
-fn level(problem: &ForceProblem<'_>) -> f64 {
+fn level(forces: &ForceProblem<'_>) -> f64 {
     let mean = |sign: f64| {
         let (mut sum, mut count) = (0.0, 0_usize);
-        for record in problem.records() {
+        for record in forces.records() {
             for (force, velocity) in record.forces().iter().zip(record.velocities()) {
                 if velocity * sign > record.motion.rest_speed {
                     sum += force;
@@ -89,16 +130,16 @@ fn level(problem: &ForceProblem<'_>) -> f64 {
         (None, Some(back)) => -back,
         (None, None) => 0.0,
     };
-    let all = problem.records().iter().flat_map(ForceRecord::forces);
+    let all = forces.records().iter().flat_map(ForceRecord::forces);
     level.max(1e-3 * all.fold(0.0, |largest, force| force.abs().max(largest)))
 }
 
-/// The sum of squares and `values` with what the force is proportional to, all levels together, set to what fits best.
-fn levelled(problem: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Vec<f64>), EvaluationError> {
-    let first = problem.first_shape();
-    let (residuals, mut columns) = problem.linear(&values)?;
-    let is_free = |j: usize| !problem.parameters()[j].bounds().is_fixed();
-    let levels: Vec<bool> = problem.law().fitted().map(|parameter| is_proportional(parameter.role())).collect();
+/// The sum of squares, and `values` with all levels by one factor and the shapes set to the best fit.
+fn levelled(forces: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Vec<f64>), EvaluationError> {
+    let first = forces.first_shape();
+    let (residuals, mut columns) = forces.linear(&values)?;
+    let is_free = |j: usize| !forces.parameters()[j].bounds().is_fixed();
+    let levels: Vec<bool> = forces.law().fitted().map(|parameter| is_proportional(parameter.role())).collect();
     let is_level = |j: &usize| levels[*j] && is_free(*j);
     if !(0..first).any(|j| is_level(&j)) {
         columns[0].fill(0.0);
@@ -123,7 +164,7 @@ fn levelled(problem: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Ve
     for (value, step) in values[first..].iter_mut().zip(&steps[1..]) {
         *value -= step;
     }
-    for (value, parameter) in values.iter_mut().zip(problem.parameters()) {
+    for (value, parameter) in values.iter_mut().zip(forces.parameters()) {
         *value = parameter.bounds().clamp(*value);
     }
     let left =
@@ -131,7 +172,7 @@ fn levelled(problem: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Ve
     Ok(((0..residuals.len()).map(|row| left(row).powi(2)).sum(), values))
 }
 
-/// Whether a role is proportional to friction, the viscous part included.
+/// True for a role that is proportional to friction, the viscous part included.
 fn is_proportional(role: Role) -> bool {
     is_force(role) || role == Role::Slope
 }

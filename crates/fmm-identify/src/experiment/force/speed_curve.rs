@@ -2,7 +2,7 @@
 
 use fmm_fit::{effective_count, median_deviation};
 
-use crate::force::ForceRecord;
+use crate::experiment::force::ForceRecord;
 use fmm_model::Estimated;
 
 /// Friction at about one speed: half the difference between the median forces of the two directions.
@@ -12,7 +12,7 @@ pub struct SpeedBin {
     pub speed: f64,
     /// Friction, in the unit of the force.
     pub friction: Estimated,
-    /// What does not change with the direction, half the sum of the two medians, in the same unit: the zero of the
+    /// Force that does not change with the direction, half the sum of the two medians, in the same unit: the zero of the
     /// sensor, gravity, or levels that differ by direction.
     pub offset: Estimated,
     /// Median normal load (N); `None` where none was measured.
@@ -62,7 +62,7 @@ impl ForceRecord {
         self.bins((0..self.len()).collect(), count)
     }
 
-    /// As [`friction_over_speed`](Self::friction_over_speed), for up to `loads` groups of the measured normal load with
+    /// Like [`friction_over_speed`](Self::friction_over_speed), for up to `loads` groups of the measured normal load with
     /// as many samples each, light ones first: Stribeck's plot, friction by load over speed by load. Without a measured
     /// load there is one group.
     ///

@@ -1,0 +1,166 @@
+//! Identification of forces along motions, and the forces that it predicts.
+
+use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
+
+use crate::error::IdentifyError;
+use crate::experiment::force::{ForceRecord, deviation};
+use crate::identification::Identification;
+use crate::problem::Problem;
+use crate::problem::force::ForceProblem;
+use crate::warning::Warning;
+
+/// Results of a fit to forces, beside those of every identification.
+#[derive(Debug, Clone)]
+pub(super) struct ForceResults {
+    /// Standard deviation of the forces, in their unit.
+    deviation: f64,
+    /// Units of position and of force.
+    units: [String; 2],
+    /// One flag per residual: it counts.
+    counts: Vec<bool>,
+    /// Degrees of freedom of all residuals over those of the counting ones (1).
+    spread: f64,
+}
+
+/// Agreement of a model with the forces of a record to which it was not fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Validation {
+    /// Root mean square of the predicted force less the measured one, in the unit of the force.
+    pub rms: f64,
+    /// Standard deviation of the force, in its unit.
+    pub force: f64,
+}
+
+impl Validation {
+    /// The one over the other (1); `None` if the force does not change.
+    pub fn share(&self) -> Option<f64> {
+        (self.force > 0.0).then(|| self.rms / self.force)
+    }
+}
+
+impl ForceResults {
+    /// Those of a `fit` of `forces`.
+    pub(super) fn of(forces: &ForceProblem<'_>, fit: &Fit) -> Self {
+        let (counts, records) = (forces.counts(fit.values()), forces.records());
+        // Samples that do not count leave no residual, but look like rows without noise.
+        let (all, counted) = (counts.len(), counts.iter().filter(|counts| **counts).count());
+        let rank = fit.rank().min(counted.saturating_sub(1));
+        let spread = (all - fit.rank().min(all)) as f64 / (counted - rank).max(1) as f64;
+        let units = [records[0].position_unit(), records[0].force_unit()].map(str::to_owned);
+        Self { deviation: deviation(records), units, counts, spread }
+    }
+
+    /// Standard deviation of the forces, in their unit.
+    pub(super) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// Degrees of freedom of all residuals over those of the counting ones (1).
+    pub(super) fn spread(&self) -> f64 {
+        self.spread
+    }
+}
+
+impl Warning {
+    /// Limits of an `identification` of forces in this `unit`.
+    pub(super) fn of_force(identification: &Identification, unit: &str) -> Vec<Self> {
+        let (structure, inflation) = (identification.structure(), identification.inflation());
+        let mut warnings = Vec::new();
+        if structure.is_structured() {
+            let (residual, noise, unit) = (structure.residual, structure.noise, unit.to_owned());
+            warnings.push(Self::StructuredResiduals { residual, noise, unit, inflation });
+        }
+        warnings.extend(structure.coloured_noise(inflation));
+        Self::of_fit(identification.fit(), &mut warnings);
+        warnings
+    }
+}
+
+impl Identification {
+    /// Unit of the force; `None` for an identification of vibrations.
+    pub(crate) fn force_unit(&self) -> Option<&str> {
+        self.forces.as_ref().map(|forces| forces.units[1].as_str())
+    }
+
+    /// One flag per residual: it counts; `None` if all do.
+    pub(super) fn counts(&self) -> Option<&[bool]> {
+        self.forces.as_ref().map(|forces| forces.counts.as_slice())
+    }
+
+    /// Degrees of freedom of all residuals over those of the counting ones (1).
+    pub(super) fn spread(&self) -> f64 {
+        self.forces.as_ref().map_or(1.0, |forces| forces.spread)
+    }
+
+    /// Root mean square of the residuals over the standard deviation of the forces along motions (1); `None` for an
+    /// identification of vibrations, or if the forces do not change.
+    pub fn share_of_force(&self) -> Option<f64> {
+        let force = self.forces.as_ref()?.deviation;
+        Validation { rms: self.rms_residual(), force }.share()
+    }
+
+    /// Force of the model at each sample of `record`, in its unit. Nothing is fitted to the record but the deflection of
+    /// the bristles at its beginning.
+    ///
+    /// `None` stands at a sample that needs a motion before or after the measured one for its delay, and at one where
+    /// the contact rests or turns and the law, a leap between two levels, has no value.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Contradiction`] for an identification of vibrations, [`IdentifyError::WrongRecord`] for a record
+    /// in other units, with other channels or with a load in one of the two only, and as for
+    /// [`identify`](crate::identify).
+    pub fn predict(&self, record: &ForceRecord) -> Result<Vec<Option<f64>>, IdentifyError> {
+        let forces = self.forces.as_ref().ok_or_else(|| {
+            IdentifyError::contradiction("an identification of vibrations predicts no force along a motion")
+        })?;
+        record.require_units([&forces.units[0], &forces.units[1]])?;
+        let (law, fit) = (self.family(), self.fit());
+        let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
+        let problem = Problem::of(law, self.machine, self.terms().clone(), std::slice::from_ref(record))?;
+        let shared = problem.table().shared;
+        let mut pairs = problem.parameters().iter().zip(fit.estimates()).take(shared);
+        if let Some((own, fitted)) = pairs.find(|(own, fitted)| own.name() != fitted.name()) {
+            return Err(IdentifyError::wrong_record(format!(
+                "the record has the quantity {} in place of {}: give loads and channels as with the records of the \
+                 identification",
+                own.name(),
+                fitted.name()
+            )));
+        }
+        let problem = problem.with_shared(fit.values())?;
+        let Some(forces) = problem.forces() else { return Ok(Vec::new()) };
+        let mut values = fit.values()[..problem.parameters().len()].to_vec();
+        for (place, deflection) in forces.first_deflections() {
+            values[place] = deflection;
+        }
+        if values.len() > shared {
+            let fit = solve(&problem, &values, &Options::default());
+            values = fit.map_err(|source| IdentifyError::Fit { law: law.name, source })?.values().to_vec();
+        }
+        let mut residuals = vec![0.0; problem.len()];
+        problem.evaluate(&values, &mut residuals, None).map_err(failure)?;
+        let samples = forces.samples()[0].clone();
+        let measured = residuals.iter().zip(&record.forces()[samples.clone()]).zip(forces.counts(&values));
+        let predicted = measured.map(|((residual, force), counts)| counts.then_some(residual + force));
+        let mut all = vec![None; record.len()];
+        all[samples].iter_mut().zip(predicted).for_each(|(out, force)| *out = force);
+        Ok(all)
+    }
+
+    /// Agreement with the forces of a record to which it was not fitted.
+    ///
+    /// # Errors
+    /// Those of [`predict`](Self::predict), and [`IdentifyError::NotSeen`] if no sample of the record counts.
+    pub fn validate(&self, record: &ForceRecord) -> Result<Validation, IdentifyError> {
+        let predicted = self.predict(record)?;
+        let both = || predicted.iter().zip(record.forces()).filter_map(|(said, force)| Some(((*said)?, *force)));
+        if both().next().is_none() {
+            return Err(IdentifyError::not_seen(
+                "the contact slides at no sample of the record, so that the model predicts no force",
+            ));
+        }
+        let squares: f64 = both().map(|(said, force)| (said - force).powi(2)).sum();
+        let rms = (squares / both().count() as f64).sqrt();
+        Ok(Validation { rms, force: deviation(std::slice::from_ref(record)) })
+    }
+}
