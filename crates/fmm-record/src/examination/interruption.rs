@@ -113,7 +113,7 @@ mod tests {
                     + share * (-0.8 * t).exp() * (TAU * frequency * t).cos()
                     + 0.1 * (TAU * 50.0 * t).cos()
             };
-            let found = Examination::of(&record(both, 1e-3)).interruption();
+            let found = Examination::of(record(both, 1e-3)).interruption();
             assert_eq!(found, None, "{frequency} Hz, {share}");
         }
     }
@@ -126,7 +126,7 @@ mod tests {
         let cases: [&dyn Fn(f64) -> f64; 3] = [&|t| held(t) * decay(t), &|t| touched(t) * decay(t), &fixed];
         for (index, values) in cases.into_iter().enumerate() {
             for noise in [0.0, 2e-3] {
-                let found = Examination::of(&record(values, noise)).interruption().unwrap();
+                let found = Examination::of(record(values, noise)).interruption().unwrap();
                 assert!((3.6..=4.04).contains(&found.sound_until), "{index}: {found:?}");
             }
         }
@@ -139,7 +139,7 @@ mod tests {
         let light = |t: f64| (-0.002 * t).exp() * (TAU * 3.0 * t).cos() * if t < 4.03 { 1.0 } else { 0.97 };
         let cases: [&dyn Fn(f64) -> f64; 2] = [&sticky, &light];
         for (index, values) in cases.into_iter().enumerate() {
-            assert_eq!(Examination::of(&record(values, 1e-5)).interruption(), None, "{index}");
+            assert_eq!(Examination::of(record(values, 1e-5)).interruption(), None, "{index}");
         }
     }
 
@@ -157,7 +157,7 @@ mod tests {
         let cases: [&dyn Fn(f64) -> f64; 8] = [&decay, &line, &quadratic, &strong, &rising, &beat, &up, &down];
         for (index, values) in cases.into_iter().enumerate() {
             for noise in [0.0, 5e-3] {
-                assert_eq!(Examination::of(&record(values, noise)).interruption(), None, "{index} with {noise}");
+                assert_eq!(Examination::of(record(values, noise)).interruption(), None, "{index} with {noise}");
             }
         }
     }

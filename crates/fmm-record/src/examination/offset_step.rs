@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn sound_records_have_none() {
         #[cfg(feature = "mat")]
-        assert_eq!(Examination::of(&crate::tests::synthetic::fork()).offset_step(), None);
+        assert_eq!(Examination::of(crate::tests::synthetic::fork()).offset_step(), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
             assert_eq!(Examination::of(&record).offset_step(), None);
         }

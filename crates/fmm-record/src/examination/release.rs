@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn records_that_begin_in_motion_have_no_release() {
         #[cfg(feature = "mat")]
-        assert_eq!(Examination::of(&crate::tests::synthetic::fork()).release(), None);
+        assert_eq!(Examination::of(crate::tests::synthetic::fork()).release(), None);
         for record in [wheel(), pendulum(), pendulum_velocity()] {
             assert_eq!(Examination::of(&record).release(), None);
         }

@@ -330,7 +330,7 @@ mod tests {
         let sound = record.crop(0.0, further_releases(&record)[0].sound_until).unwrap();
         assert_eq!(Examination::of(&sound).second_mode(), None);
         let record = with_hum();
-        assert_eq!(Examination::of(&Examination::of(&record).without_hum()).second_mode(), None);
+        assert_eq!(Examination::of(Examination::of(&record).without_hum()).second_mode(), None);
     }
 
     #[test]
@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn a_slow_beat_is_found_where_half_cycles_rise() {
-        let found = Examination::of(&two_modes(30.0, 1.1, 0.5, 0.01)).second_mode().unwrap();
+        let found = Examination::of(two_modes(30.0, 1.1, 0.5, 0.01)).second_mode().unwrap();
         assert!((found.frequency / 2.2 - 1.0).abs() < 0.2 && found.share > 0.1, "{found:?}");
     }
 

@@ -96,7 +96,7 @@ mod tests {
         for factor in [2_usize, 3, 10, 50] {
             for first in [0, 1, factor - 1] {
                 let held: Vec<f64> = (0..299 * factor).map(|i| measured[(i + factor - first) / factor]).collect();
-                let found = Examination::of(&record(held.clone())).upsampling().unwrap();
+                let found = Examination::of(record(held.clone())).upsampling().unwrap();
                 assert_eq!((found.factor, found.first, found.is_interpolated), (factor, first, false));
                 let undone = found.measured(&record(held)).unwrap();
                 assert_eq!(undone.values()[..200], measured[1..201]);
@@ -105,7 +105,7 @@ mod tests {
                     let (whole, part) = ((i + factor - first) / factor, (i + factor - first) % factor);
                     measured[whole] + (measured[whole + 1] - measured[whole]) * part as f64 / factor as f64
                 };
-                let found = Examination::of(&record((0..298 * factor).map(between).collect())).upsampling().unwrap();
+                let found = Examination::of(record((0..298 * factor).map(between).collect())).upsampling().unwrap();
                 assert_eq!((found.factor, found.first, found.is_interpolated), (factor, first, true));
             }
         }
@@ -113,24 +113,24 @@ mod tests {
 
     #[test]
     fn measured_samples_are_none() {
-        assert_eq!(Examination::of(&record(measured(1000))).upsampling(), None);
+        assert_eq!(Examination::of(record(measured(1000))).upsampling(), None);
         // Steps of a coarse converter repeat values, but not at regular places.
         let coarse: Vec<f64> = measured(4000).iter().map(|value| (value * 20.0).round() / 20.0).collect();
-        assert_eq!(Examination::of(&record(coarse)).upsampling(), None);
-        assert_eq!(Examination::of(&record((0..500).map(f64::from).collect())).upsampling(), None);
-        assert_eq!(Examination::of(&record(vec![1.0; 500])).upsampling(), None);
+        assert_eq!(Examination::of(record(coarse)).upsampling(), None);
+        assert_eq!(Examination::of(record((0..500).map(f64::from).collect())).upsampling(), None);
+        assert_eq!(Examination::of(record(vec![1.0; 500])).upsampling(), None);
         // A dozen steps may lie at regular places by chance.
         let few = |i: usize| if i < 48 { (i / 4) as f64 } else { 12.0 };
-        assert_eq!(Examination::of(&record((0..500).map(few).collect())).upsampling(), None);
+        assert_eq!(Examination::of(record((0..500).map(few).collect())).upsampling(), None);
         // Rest is no repetition of what moves after it.
         let mut late = vec![0.0; 1000];
         late.extend(measured(1000));
-        assert_eq!(Examination::of(&record(late)).upsampling(), None);
+        assert_eq!(Examination::of(record(late)).upsampling(), None);
     }
 
     #[cfg(feature = "mat")]
     #[test]
     fn fork_was_not_resampled() {
-        assert_eq!(Examination::of(&crate::tests::synthetic::fork()).upsampling(), None);
+        assert_eq!(Examination::of(crate::tests::synthetic::fork()).upsampling(), None);
     }
 }
