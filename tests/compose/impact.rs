@@ -206,8 +206,8 @@ fn peaks_lie_on_a_line() {
     }
 }
 
-/// A light machine at 1 kHz, so that an impact is short to simulate: 0.5 kg, 79 N/m, μ N = 0.06 N, at rest after 1.5 s of
-/// 2 s.
+/// A light machine at 1 kHz, so that an impact is short to simulate: 0.5 kg, 79 N/m, μ N = 0.06 N, at rest after 1.5 s
+/// of 2 s.
 mod small {
     use super::*;
 

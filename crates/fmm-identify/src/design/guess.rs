@@ -133,15 +133,15 @@ impl Guess {
         Self::of(machine, family, candidate.terms().clone(), Unit::of("m"), values)
     }
 
-    /// Result of a pilot experiment: values, their uncertainty, and the information of its `records`, which must be those
-    /// of the identification.
+    /// Result of a pilot experiment: values, their uncertainty, and the information of its `records`, which must be
+    /// those of the identification.
     ///
     /// # Errors
     /// Those of [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
     pub fn of_pilot(found: &Identification, records: &[Experiment]) -> Result<Self, IdentifyError> {
         let (machine, terms) = (*found.machine(), found.terms().clone());
         let problem = crate::problem::Problem::of(found.family(), machine, terms.clone(), records)?;
-        let layout = problem.table();
+        let layout = problem.quantities();
         let position = layout.units.position.clone();
         let shared = layout.shared;
         let of_fit: Vec<(&str, f64)> =
@@ -220,8 +220,8 @@ impl Guess {
         self.place(name).ok().map(|place| self.values[place])
     }
 
-    /// `count` draws of the values, from the covariance of the pilot or the given uncertainties; a draw outside the bounds
-    /// is put on them. The same `seed` gives the same draws.
+    /// `count` draws of the values, from the covariance of the pilot or the given uncertainties; a draw outside the
+    /// bounds is put on them. The same `seed` gives the same draws.
     pub fn draws(&self, count: usize, seed: u64) -> Vec<Vec<f64>> {
         let mut draws = self.spread.draws(&self.values, count, seed).unwrap_or_default();
         for draw in &mut draws {

@@ -25,8 +25,8 @@ pub(crate) enum Input {
     Gain(PlannedSensor),
 }
 
-/// The uncertain inputs of a plan, each with its standard uncertainty. Beside the shared parameters they are parameters:
-/// their errors in standard uncertainties, known to ± 1.
+/// The uncertain inputs of a plan, each with its standard uncertainty. Beside the shared parameters they are
+/// parameters: their errors in standard uncertainties, known to ± 1.
 #[derive(Debug, Clone)]
 pub(crate) struct Inputs(Vec<(Input, f64)>);
 

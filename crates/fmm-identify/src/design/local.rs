@@ -198,7 +198,7 @@ impl Local<'_> {
         let law = self.guess.law.with_held_breakaway();
         let machine = self.machine(test, &self.guess.machine)?;
         let own = Problem::of(law, machine, self.guess.terms.clone(), &experiments)?.without_prior();
-        let of_problem = own.table().shared;
+        let of_problem = own.quantities().shared;
         let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
         // Each shared row of the problem is one of the guess, or something known of the machine.
         let input = |row: &Row| match row.place {
@@ -206,7 +206,7 @@ impl Local<'_> {
             _ => self.inputs.find(Input::Scale),
         };
         let rows: Vec<(Option<usize>, &Row)> =
-            own.parameters()[..of_problem].iter().map(place).zip(&own.table().rows).collect();
+            own.parameters()[..of_problem].iter().map(place).zip(&own.quantities().rows).collect();
         let state = |parameter: &Parameter| match (parameter.name(), &test.motion) {
             ("initial_position", Motion::Released(position)) => *position,
             ("force_gain" | "base_gain", _) => 1.0,

@@ -261,8 +261,8 @@ impl Plan {
     /// The best set of tests at the guess whose costs add up to no more than `budget`.
     ///
     /// # Errors
-    /// Those of [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more than
-    /// 1000.
+    /// Those of [`search`](Self::search), and [`IdentifyError::OutOfRange`] for a budget that pays for none or more
+    /// than 1000.
     pub fn best_within(&self, aim: &Aim, budget: f64) -> Result<ChosenDesign, IdentifyError> {
         let costs: Vec<f64> = self.tests.iter().map(PlannedTest::cost).collect();
         self.search(aim)?.best_within(&costs, budget).map_err(|error| number(budget, &error))
@@ -308,8 +308,8 @@ impl Plan {
         })
     }
 
-    /// A sentence for each different test of a set on its contribution: the direction that would stay free without it, or
-    /// the finding that would lose most. The sentences are in the order of the places.
+    /// A sentence for each different test of a set on its contribution: the direction that would stay free without it,
+    /// or the finding that would lose most. The sentences are in the order of the places.
     ///
     /// # Errors
     /// Those of [`predict`](Self::predict).

@@ -124,8 +124,8 @@ impl PlannedTest {
         Self::of(format!("release at {position} m"), Motion::Released(position), sensor, rate, duration)
     }
 
-    /// An impact of half a sine, `peak` (N) high and `pulse` (s) long, on the machine at rest, and the response from its
-    /// beginning on.
+    /// An impact of half a sine, `peak` (N) high and `pulse` (s) long, on the machine at rest, and the response from
+    /// its beginning on.
     ///
     /// # Errors
     /// Those of [`release`](Self::release), and for a pulse of fewer than four samples.

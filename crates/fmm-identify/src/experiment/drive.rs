@@ -80,8 +80,8 @@ impl Drive {
         Ok(Self { gain_uncertainty, ..self })
     }
 
-    /// The same with a calibration of this relative standard uncertainty (1) that it shares with the drives of all other
-    /// experiments, as the impacts of one hammer do.
+    /// The same with a calibration of this relative standard uncertainty (1) that it shares with the drives of all
+    /// other experiments, as the impacts of one hammer do.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.

@@ -18,9 +18,9 @@ use crate::machine::{Machine, Scale};
 const BAND: (f64, f64) = (0.5, 2.0);
 
 impl Experiment {
-    /// The impact of a hammer: the velocity from the beginning of the impact until a while after rest, driven by the measured
-    /// force. The machine is at rest before; samples during contact are left out, as the force between its samples is
-    /// not known. What the samples of the force leave
+    /// The impact of a hammer: the velocity from the beginning of the impact until a while after rest, driven by the
+    /// measured force. The machine is at rest before; samples during contact are left out, as the force between its
+    /// samples is not known. What the samples of the force leave
     /// open of the impulse and of its time is fitted with that knowledge.
     ///
     /// [`mobility`](Self::mobility) compares the lines of a spectrum instead.

@@ -165,8 +165,8 @@ impl ImpactTrial {
         })
     }
 
-    /// The same measured by a hammer of which the calibration has this relative standard uncertainty (1). Impacts that are
-    /// fitted together share it.
+    /// The same measured by a hammer of which the calibration has this relative standard uncertainty (1). Impacts that
+    /// are fitted together share it.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] for one that is negative or not finite.

@@ -116,8 +116,8 @@ pub struct RecordSummary {
     pub hum: Vec<Hum>,
     /// When the machine was released or pushed again (s). The record is used until shortly before the first of them.
     pub further_releases: Vec<f64>,
-    /// Time at which something else than the machine itself took the motion, after which the record was not used unless it was
-    /// asked for.
+    /// Time at which something else than the machine itself took the motion, after which the record was not used unless
+    /// it was asked for.
     pub interruption: Option<Interruption>,
     /// Multiplication of the samples before they were recorded; only the measured ones are used.
     pub upsampling: Option<Upsampling>,

@@ -36,7 +36,7 @@ pub(crate) fn fit_forces(
     let beginnings: Option<Vec<ForceRecord>> = records.iter().map(ForceRecord::beginning).collect();
     let begun = match &beginnings {
         Some(beginnings) => {
-            let terms = problem.table().terms.clone();
+            let terms = problem.quantities().terms.clone();
             Some(Problem::of(*law, *problem.machine(), terms, beginnings)?)
         }
         None => None,

@@ -55,7 +55,7 @@ impl<'a> Response<'a> {
     /// True if there is one: of one free vibration on a linear spring under a constant load.
     pub(crate) fn exists(problem: &Problem<'_>) -> bool {
         let [decay] = problem.experiments() else { return false };
-        problem.table().oscillator == 1
+        problem.quantities().oscillator == 1
             && problem.machine().restoring() == Restoring::Linear
             && !problem.has_spring()
             && decay.drive().is_none()
@@ -63,8 +63,8 @@ impl<'a> Response<'a> {
             && decay.load_factor() == 1.0
     }
 
-    /// Response of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these `values`;
-    /// `None` where none [exists](Self::exists), or the motion is too short.
+    /// Response of the record of `problem` about the fit of `simple`, by Coulomb and viscous friction, with these
+    /// `values`; `None` where none [exists](Self::exists), or the motion is too short.
     pub(crate) fn of(problem: &'a Problem<'a>, simple: &Problem<'_>, values: &[f64]) -> Option<Self> {
         let decay = problem.experiments().first().filter(|_| Self::exists(problem))?;
         let record = decay.record();
@@ -98,7 +98,7 @@ impl<'a> Response<'a> {
         let turns = motion.velocities.windows(2).zip(&motion.positions).map(turn).collect();
         let (step, by_force) = transition(stiffness, damping, stride as f64 * interval);
 
-        let first = simple.table().shared;
+        let first = simple.quantities().shared;
         let beside: Vec<usize> = std::iter::once(0).chain(first..values.len()).collect();
         let whole = simple.columns(values, &beside).ok()?;
         let mut left = vec![0.0; simple.len()];
@@ -137,7 +137,7 @@ impl<'a> Response<'a> {
             .with_polish_steps(0)
             .with_restarts(0)
             .with_jacobian_check(false);
-        let layout = self.problem.table();
+        let layout = self.problem.quantities();
         let of_law = layout.oscillator..layout.shared;
         let fits = on_all_threads(starts.iter().collect(), |start| solve(self, &start[of_law.clone()], &options).ok());
         let mut ends: Vec<(f64, Vec<f64>)> = Vec::with_capacity(starts.len());
@@ -170,7 +170,7 @@ impl<'a> Response<'a> {
 
     /// Residuals that the record is expected to have, what is beside the law unchanged.
     fn changed(&self, of_law: &[f64]) -> Result<Vec<f64>, EvaluationError> {
-        let layout = self.problem.table();
+        let layout = self.problem.quantities();
         let law = &layout.family;
         let alignment = Alignment {
             motion: &self.motion,
@@ -228,7 +228,7 @@ impl<'a> Response<'a> {
 
 impl Residuals for Response<'_> {
     fn parameters(&self) -> &[Parameter] {
-        let layout = self.problem.table();
+        let layout = self.problem.quantities();
         &self.problem.parameters()[layout.oscillator..layout.shared]
     }
 
@@ -250,8 +250,8 @@ fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
-/// Transition of position and velocity of a damped vibration over a time (ω₀² and c/m given), and of a constant acceleration
-/// of one.
+/// Transition of position and velocity of a damped vibration over a time (ω₀² and c/m given), and of a constant
+/// acceleration of one.
 fn transition(stiffness: f64, damping: f64, time: f64) -> ([[f64; 2]; 2], [f64; 2]) {
     let decay = 0.5 * damping;
     let angular = (stiffness - decay * decay).max(1e-12 * stiffness).sqrt();

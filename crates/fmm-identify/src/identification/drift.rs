@@ -24,7 +24,7 @@ pub(crate) fn with_drift(
     problem: &Problem<'_>,
     decays: &[Experiment],
 ) -> Option<Vec<Experiment>> {
-    if !found.structure().is_noisy() {
+    if !found.residual_structure().is_noisy() {
         return None;
     }
     let tangent = found.tangent(problem)?;
@@ -62,7 +62,7 @@ pub(crate) fn with_drift(
         // What is left must be near the noise, or it is a law that misses something.
         let left = (found.fit().sum_of_squares() - slow).max(0.0) / found.fit().residuals().len() as f64;
         let drifts = above > 0.0
-            && left.sqrt() < NEAR_NOISE * found.structure().noise
+            && left.sqrt() < NEAR_NOISE * found.residual_structure().noise
             && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE_OF_DRIFT);
         any |= drifts;
         drifting.push(if drifts { decay.clone().beside(DRIFT.to_vec()) } else { decay.clone() });

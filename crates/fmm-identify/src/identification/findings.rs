@@ -51,8 +51,8 @@ pub(crate) fn findings(
 }
 
 /// Variances by their sources of what has the `gradient` over the first of the fitted values and these standard
-/// uncertainties by `known` inputs; `None` if a value that matters has none. Values on a bound count as free to leave it
-/// where `is_relaxed`.
+/// uncertainties by `known` inputs; `None` if a value that matters has none. Values on a bound count as free to leave
+/// it where `is_relaxed`.
 fn variances(
     covariance: &Covariance,
     gradient: &[f64],

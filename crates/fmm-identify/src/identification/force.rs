@@ -64,7 +64,7 @@ impl ForceResults {
 impl Warning {
     /// Limits of an `identification` of forces in this `unit`.
     pub(super) fn of_force(identification: &Identification, unit: &str) -> Vec<Self> {
-        let (structure, inflation) = (identification.structure(), identification.inflation());
+        let (structure, inflation) = (identification.residual_structure(), identification.inflation());
         let mut warnings = Vec::new();
         if structure.is_structured() {
             let (residual, noise, unit) = (structure.residual, structure.noise, unit.to_owned());
@@ -99,15 +99,15 @@ impl Identification {
         Validation { rms: self.rms_residual(), force }.share()
     }
 
-    /// Force of the model at each sample of `record`, in its unit. Nothing is fitted to the record but the deflection of
-    /// the bristles at its beginning.
+    /// Force of the model at each sample of `record`, in its unit. Nothing is fitted to the record but the deflection
+    /// of the bristles at its beginning.
     ///
     /// `None` stands at a sample that needs a motion before or after the measured one for its delay, and at one where
     /// the contact rests or turns and the law, a leap between two levels, has no value.
     ///
     /// # Errors
-    /// [`IdentifyError::Contradiction`] for an identification of vibrations, [`IdentifyError::WrongRecord`] for a record
-    /// in other units, with other channels or with a load in one of the two only, and as for
+    /// [`IdentifyError::Contradiction`] for an identification of vibrations, [`IdentifyError::WrongRecord`] for a
+    /// record in other units, with other channels or with a load in one of the two only, and as for
     /// [`identify`](crate::identify).
     pub fn predict(&self, record: &ForceRecord) -> Result<Vec<Option<f64>>, IdentifyError> {
         let forces = self.forces.as_ref().ok_or_else(|| {
@@ -117,7 +117,7 @@ impl Identification {
         let (law, fit) = (self.family(), self.fit());
         let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
         let problem = Problem::of(law, self.machine, self.terms().clone(), std::slice::from_ref(record))?;
-        let shared = problem.table().shared;
+        let shared = problem.quantities().shared;
         let mut pairs = problem.parameters().iter().zip(fit.estimates()).take(shared);
         if let Some((own, fitted)) = pairs.find(|(own, fitted)| own.name() != fitted.name()) {
             return Err(IdentifyError::wrong_record(format!(

@@ -113,7 +113,7 @@ impl Warning {
 
     /// Residuals that are not noise.
     fn of_residuals(identification: &Identification, decays: &[Experiment], warnings: &mut Vec<Self>) {
-        let structure = identification.structure();
+        let structure = identification.residual_structure();
         if structure.is_structured() {
             warnings.push(Self::StructuredResiduals {
                 residual: structure.residual,
@@ -131,7 +131,7 @@ impl Warning {
         if decays.iter().any(Experiment::drifts) {
             warnings.push(Self::Drift);
         }
-        let structure = identification.structure();
+        let structure = identification.residual_structure();
         if !structure.is_noisy() {
             return warnings;
         }

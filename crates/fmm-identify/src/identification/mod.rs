@@ -163,9 +163,9 @@ pub fn identify_with<'a, F: LawFamily>(
     identify_observed::<F>(machine, terms, experiments, &Options::default(), &mut |_| ControlFlow::Continue(()))
 }
 
-/// Like [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit. Where
-/// fits from several starts go on several threads, it is told of their steps in any order, and must not wait for work
-/// of the pool.
+/// Like [`identify_with`], with options for the solver and an observer of every trial step, which may end the fit.
+/// Where fits from several starts go on several threads, it is told of their steps in any order, and must not wait for
+/// work of the pool.
 ///
 /// # Errors
 /// Those of [`identify_with`].
@@ -191,7 +191,7 @@ pub(crate) fn identify_by(
 ) -> Result<Identification, IdentifyError> {
     let problem = Problem::of(law, *machine, terms.clone(), experiments)?;
     let fit = fit_begun(&problem, begin, options, observer)?;
-    let (terms, decays) = (&problem.table().terms, problem.experiments());
+    let (terms, decays) = (&problem.quantities().terms, problem.experiments());
     let forces = problem.forces().map(|forces| ForceResults::of(&forces, &fit));
     let spread = forces.as_ref().map_or(1.0, ForceResults::spread);
     // One instrument for all records; the worst statement counts.
@@ -200,7 +200,7 @@ pub(crate) fn identify_by(
     let mut structure = ResidualStructure::of(&fit, experiments);
     structure.residual *= spread.sqrt();
     let covariance = Covariance::of(&problem, &fit, &structure).map_err(failure)?.times(spread);
-    let found = findings(machine, problem.table(), &fit, &covariance, gain);
+    let found = findings(machine, problem.quantities(), &fit, &covariance, gain);
     if let Some(finding) = found.iter().find(|finding| !finding.is_representable()) {
         return Err(IdentifyError::beyond_numbers(finding.parameter(), finding.value()));
     }
@@ -214,7 +214,7 @@ pub(crate) fn identify_by(
     let contradicted: Vec<Warning> = Warning::of_knowledge(&problem, &fit).collect();
     let amplitudes = scaled(decays).map(|(decay, weight)| weight * decay.summary().amplitudes.0);
     let amplitude = amplitudes.fold(forces.as_ref().map_or(0.0, ForceResults::deviation), f64::max);
-    let friction_at_rest = friction_at_rest(problem.table(), fit.values()).filter(|_| forces.is_none());
+    let friction_at_rest = friction_at_rest(problem.quantities(), fit.values()).filter(|_| forces.is_none());
     let mut identification = Identification {
         law: terms.name(law.name),
         friction_at_rest,
@@ -224,7 +224,7 @@ pub(crate) fn identify_by(
         pull_at_bound: pull_at_bound(&problem, &fit, &covariance),
         covariance,
         amplitude,
-        fitted: Fitted { law: problem.table().family, terms: terms.clone(), fit },
+        fitted: Fitted { law: problem.quantities().family, terms: terms.clone(), fit },
         findings: found,
         motions,
         warnings: Vec::new(),
@@ -235,7 +235,7 @@ pub(crate) fn identify_by(
         None => Warning::of(&identification, decays),
     };
     identification.warnings.extend(contradicted);
-    let held = problem.table().family.held_breakaway();
+    let held = problem.quantities().family.held_breakaway();
     identification
         .warnings
         .extend(held.map(|held| Warning::StaticLevelHeld { parameter: held.parameter().name().to_owned() }));
@@ -439,7 +439,7 @@ impl Identification {
         &self.covariance
     }
 
-    pub(crate) fn structure(&self) -> ResidualStructure {
+    pub(crate) fn residual_structure(&self) -> ResidualStructure {
         self.structure
     }
 
@@ -461,8 +461,8 @@ impl Identification {
         self.fitted.fit.rank() + self.fitted.fit.estimates().iter().filter(is_used).count()
     }
 
-    /// Positions at which a law can leap (1): the samples of a half cycle for a law that comes to rest within a dead zone,
-    /// else one.
+    /// Positions at which a law can leap (1): the samples of a half cycle for a law that comes to rest within a dead
+    /// zone, else one.
     pub(crate) fn leap_positions(&self) -> f64 {
         if self.finding("dead_zone").is_none() {
             return 1.0;
@@ -487,8 +487,8 @@ impl Identification {
         self.covariance.effective_count()
     }
 
-    /// Changes that the parameters of this fit to `problem` can follow, those on a bound included; `None` if the derivatives
-    /// cannot be had.
+    /// Changes that the parameters of this fit to `problem` can follow, those on a bound included; `None` if the
+    /// derivatives cannot be had.
     pub(crate) fn tangent(&self, problem: &Problem<'_>) -> Option<Tangent> {
         Tangent::of(problem, &self.fitted.fit)
     }
@@ -512,7 +512,7 @@ impl Identification {
         })
     }
 
-    /// Whether the same samples count for this fit and for `other`.
+    /// True if the same samples count for this fit and for `other`.
     pub(crate) fn counts_as(&self, other: &Self) -> bool {
         self.counts() == other.counts()
     }

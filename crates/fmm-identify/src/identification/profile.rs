@@ -136,10 +136,10 @@ impl Identification {
         let decays = self.experiments(decays)?;
         let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &decays)?;
         let mut found = Profiles { computed: Vec::new(), left_out: Vec::new(), residual_evaluations: 0 };
-        if !self.structure().is_noisy() {
+        if !self.residual_structure().is_noisy() {
             return Ok(found);
         }
-        for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.table().shared) {
+        for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.quantities().shared) {
             // Beside what is not determined a value on its bound has no variance either.
             let is_known = self.covariance().relaxed(index).is_some();
             if !is_known || matches!(estimate.status(), EstimateStatus::Fixed | EstimateStatus::Undetermined) {

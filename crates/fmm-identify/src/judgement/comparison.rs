@@ -40,8 +40,8 @@ pub struct NestedTest {
 /// * no filter in the sensor explains the record as well, and
 /// * no drift was fitted beside residuals that are still correlated.
 ///
-/// If a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The uncertainties
-/// of the preferred law include the difference to the laws that are left, by their probability.
+/// If a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The
+/// uncertainties of the preferred law include the difference to the laws that are left, by their probability.
 ///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
@@ -128,11 +128,12 @@ pub fn compare_observed<'a>(
 
 /// The closest of these laws leaves noise of the records. A drift that leaves more may be a law that misses something.
 pub(crate) fn explains(identifications: &[Identification]) -> bool {
-    closest(identifications).is_some_and(|found| !found.structure().is_structured())
+    closest(identifications).is_some_and(|found| !found.residual_structure().is_structured())
 }
 
 impl Comparison {
-    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have none.
+    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have
+    /// none.
     pub(crate) fn of(
         decays: &[Experiment],
         candidates: &[Candidate],
@@ -153,7 +154,7 @@ impl Comparison {
         judgement.is_decided &= sensor.as_ref().is_none_or(|warning| matches!(warning, Warning::LeftOut { .. }));
         // The law may have taken a part of the drift.
         let drifts = decays.iter().any(Experiment::drifts);
-        judgement.is_decided &= !(drifts && identifications[preferred].structure().is_correlated());
+        judgement.is_decided &= !(drifts && identifications[preferred].residual_structure().is_correlated());
         // Noise that grows with the motion hides further parameters of a law that is left.
         let grows = identifications[preferred].noise().growth().is_some();
         let has_others = (0..candidates.len()).any(|place| place != preferred && judgement.is_left(place));

@@ -36,7 +36,7 @@ pub(crate) fn filtering_sensor(
     if let Some(uncertainty) = corner.uncertainty().filter(|u| corner.value() > SHOWN_CORNER * u) {
         return Ok(Some(Warning::FilteringSensor { law, corner: corner.value(), uncertainty }));
     }
-    let is_explained = preferred.structure().is_structured() && !found.structure().is_correlated();
+    let is_explained = preferred.residual_structure().is_structured() && !found.residual_structure().is_correlated();
     Ok(is_explained.then_some(Warning::Beginning { law, time: settled }))
 }
 
@@ -57,7 +57,7 @@ pub(crate) fn behind_filter(
         matches!(found.family().dry_name(), None | Some("coulomb")) && !found.terms().has_spring()
     };
     let Some(simple) = closest(identifications.iter().filter(is_simple)) else { return Ok(None) };
-    let structure = simple.structure();
+    let structure = simple.residual_structure();
     if !structure.is_correlated() && structure.residual < EXCESS_OF_FILTER * structure.noise {
         return Ok(None);
     }

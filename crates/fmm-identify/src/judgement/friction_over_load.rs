@@ -14,8 +14,8 @@ use crate::judgement::rules::LEVEL;
 pub enum LoadVerdict {
     /// In proportion to the load, within the uncertainty of the runs: F = μ N (Amontons).
     Proportional,
-    /// Growing with the load from a level other than zero: F/N depends on the load, and one coefficient does not describe
-    /// it.
+    /// Growing with the load from a level other than zero: F/N depends on the load, and one coefficient does not
+    /// describe it.
     Offset,
     /// Not seen to grow with the load.
     Independent,

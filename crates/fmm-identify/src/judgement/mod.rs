@@ -76,13 +76,13 @@ impl Judgement {
     /// D_i = (S_i − S_b)/σ_i²,     σ_i² = δᵀΣδ/δᵀδ,     δ = r_i − r_b
     /// ```
     ///
-    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. Samples that do not count
-    /// for one of the two laws are left out of S and δ, and b is the law that fewest others fit better than. σ_i² is the
-    /// variance of that noise in the direction in which the two laws differ: twice the logarithm of a ratio of
+    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. Samples that do not
+    /// count for one of the two laws are left out of S and δ, and b is the law that fewest others fit better than. σ_i²
+    /// is the variance of that noise in the direction in which the two laws differ: twice the logarithm of a ratio of
     /// likelihoods for correlated noise. It depends on the two laws alone, and not on how often the record was sampled,
-    /// nor on other candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the best
-    /// law has more parameters, at least one; times the positions at which a best law that leaps can leap, each of which
-    /// is a try (Bonferroni).
+    /// nor on other candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the
+    /// best law has more parameters, at least one; times the positions at which a best law that leaps can leap, each of
+    /// which is a try (Bonferroni).
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let better =
             |found: &Identification| identifications.iter().filter(|other| found.excess_beside(other) > 0.0).count();

@@ -69,7 +69,8 @@ pub(crate) const MOST_ITERATIONS_WITH_STATE: usize = 40;
 /// apart.
 pub(crate) const FALLS: [f64; 4] = [0.02, 0.06, 0.2, 0.5];
 
-/// Size of an extension that is simulated (1). Origin: small enough to be proportional, large enough not to be rounding.
+/// Size of an extension that is simulated (1). Origin: small enough to be proportional, large enough not to be
+/// rounding.
 pub(crate) const STEP: f64 = 0.01;
 
 /// Share of a change that no parameter can follow, below which it is rounding and curvature (1).

@@ -95,7 +95,7 @@ pub(crate) fn score_tests(
 ) -> Result<(Vec<ScoreTest>, Vec<Warning>), IdentifyError> {
     let machine = *base.machine();
     let problem = Problem::with_terms::<CoulombViscous>(machine, base.terms().clone(), decays)?;
-    let layout = problem.table();
+    let layout = problem.quantities();
     if layout.oscillator != 1 || !base.terms().is_empty() {
         return Ok((Vec::new(), Vec::new()));
     }
@@ -146,8 +146,8 @@ pub(crate) fn score_tests(
     Ok((tests, warnings))
 }
 
-/// The test of an `extension` whose small step makes the residuals `changed`; `None` if the parameters can follow it, or
-/// if the residuals are rounding.
+/// The test of an `extension` whose small step makes the residuals `changed`; `None` if the parameters can follow it,
+/// or if the residuals are rounding.
 fn score_test(base: &Identification, tangent: &Tangent, extension: Extension, changed: &[f64]) -> Option<ScoreTest> {
     let residuals = base.fit().residuals();
     let mut direction: Vec<f64> =
@@ -156,7 +156,7 @@ fn score_test(base: &Identification, tangent: &Tangent, extension: Extension, ch
     tangent.take_out(&mut direction);
     let square: f64 = direction.iter().map(|d| d * d).sum();
     let noise = base.noise().product(&direction, &direction);
-    if !(square > LEAST_CHANGE * before && noise > 0.0 && base.structure().is_noisy()) {
+    if !(square > LEAST_CHANGE * before && noise > 0.0 && base.residual_structure().is_noisy()) {
         return None;
     }
     let product: f64 = direction.iter().zip(residuals).map(|(d, r)| d * r).sum();

@@ -25,8 +25,8 @@ use crate::problem::fitted::Fall;
 use crate::threads::on_all_threads;
 use crate::warning::Warning;
 
-/// Options of a search for the law. The default tries as many laws as the record asks for, on all threads of the current
-/// rayon pool.
+/// Options of a search for the law. The default tries as many laws as the record asks for, on all threads of the
+/// current rayon pool.
 ///
 /// ```
 /// use std::time::Duration;
@@ -67,8 +67,8 @@ impl Search {
         Self { time_limit: Some(limit), ..self }
     }
 
-    /// Searches on `threads` threads of its own, at least one; without the feature `rayon` there is one. The result does
-    /// not depend on it.
+    /// Searches on `threads` threads of its own, at least one; without the feature `rayon` there is one. The result
+    /// does not depend on it.
     #[must_use]
     pub fn on_threads(self, threads: usize) -> Self {
         Self { threads: Some(threads.max(1)), ..self }
@@ -266,10 +266,11 @@ where
         let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
         let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
-        // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the comparison.
+        // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
+        // comparison.
         let is_filtered = || {
             let behind = behind_filter(decays, &found.identifications).ok().flatten();
-            behind.is_some_and(|(found, _)| !found.structure().is_correlated())
+            behind.is_some_and(|(found, _)| !found.residual_structure().is_correlated())
         };
         if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
             let bent = run.fit(run.candidates(beside(&SPRINGS))?, found.near(&falls, &[], 0).as_ref())?;
@@ -288,8 +289,8 @@ where
             let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
             found.add(further);
         }
-        // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither moves
-        // where the machine turns.
+        // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
+        // moves where the machine turns.
         let steps = decays.iter().map(|decay| {
             let summary = decay.summary();
             summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
@@ -402,7 +403,7 @@ impl Found {
 
     /// The residuals of the best law are correlated.
     fn is_structured(&self) -> bool {
-        self.preferred().is_some_and(|preferred| preferred.structure().is_correlated())
+        self.preferred().is_some_and(|preferred| preferred.residual_structure().is_correlated())
     }
 
     /// The best law is one on a spring that is not linear.

@@ -76,8 +76,8 @@ impl Machine {
         Ok(Self { scale: Scale::Stiffness(stiffness), ..Self::per_unit_mass() })
     }
 
-    /// A machine of known `mass` (kg) and `stiffness` (N/m), such as one that is hit by a hammer: a measured force gives
-    /// its motion a scale.
+    /// A machine of known `mass` (kg) and `stiffness` (N/m), such as one that is hit by a hammer: a measured force
+    /// gives its motion a scale.
     ///
     /// # Errors
     /// [`ModelError::NotPositive`] if one of them is zero or negative.

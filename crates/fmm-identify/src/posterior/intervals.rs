@@ -47,8 +47,8 @@ impl IntervalComparison {
         self.posterior
     }
 
-    /// The ends of the other intervals differ from those of the posterior by at most a tenth of its width, or by its Monte
-    /// Carlo error.
+    /// The ends of the other intervals differ from those of the posterior by at most a tenth of its width, or by its
+    /// Monte Carlo error.
     pub fn agrees(&self) -> bool {
         let is_alike = |end: Option<f64>, of: f64| end.is_some_and(|end| (end - of).abs() <= self.alike);
         let (low, high) = self.posterior;

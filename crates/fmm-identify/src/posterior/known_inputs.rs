@@ -21,7 +21,7 @@ pub(super) struct KnownInputs<'a> {
 impl<'a> KnownInputs<'a> {
     pub(super) fn of(found: &Identification, problem: &'a Problem<'a>, experiments: &[Experiment]) -> Self {
         let gain = experiments.iter().map(|experiment| experiment.summary().gain_uncertainty).fold(0.0, f64::max);
-        Self { machine: *found.machine(), table: problem.table(), gain_uncertainty: gain }
+        Self { machine: *found.machine(), table: problem.quantities(), gain_uncertainty: gain }
     }
 
     /// The values of all findings for one draw of the fitted ones.

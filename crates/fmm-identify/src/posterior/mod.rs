@@ -83,7 +83,7 @@ impl Identification {
     /// alike.
     pub fn sampler(&self) -> Sampler {
         let sampler = Sampler::default();
-        if self.structure().is_correlated() { sampler.with_correlated_residuals() } else { sampler }
+        if self.residual_structure().is_correlated() { sampler.with_correlated_residuals() } else { sampler }
     }
 
     /// The posterior of everything found, for the `experiments` of the identification; see [`sampler`](Self::sampler).

@@ -214,8 +214,8 @@ impl<'p> ForceProblem<'p> {
         self.forces.shapes.iter().copied().zip(p[self.forces.first_shape..].iter().copied())
     }
 
-    /// Residual of a sample with this `friction` coefficient, and its slopes by that coefficient at a load of one and by
-    /// the force beside friction.
+    /// Residual of a sample with this `friction` coefficient, and its slopes by that coefficient at a load of one and
+    /// by the force beside friction.
     #[inline]
     fn residual(&self, p: &[f64], sample: &Sample<'_>, friction: f64, force: f64) -> (f64, f64, f64) {
         if !sample.counts {

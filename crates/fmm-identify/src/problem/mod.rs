@@ -181,7 +181,7 @@ impl<'a> Problem<'a> {
         self.weights[record]
     }
 
-    pub(crate) fn table(&self) -> &Table {
+    pub(crate) fn quantities(&self) -> &Table {
         &self.table
     }
 
@@ -493,7 +493,7 @@ mod tests {
         let machine = Machine::per_unit_mass();
         let problem = Problem::new::<Stribeck>(machine, decays).unwrap();
         let start = problem.beside(other.fitted(), &[other.fitted()], &problem.starts()).unwrap();
-        let law = problem.table().of_law();
+        let law = problem.quantities().of_law();
         let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
         let known = |name: &str| other.finding(name).unwrap().value();
         let speed = decays[0].scales().1;

@@ -322,7 +322,7 @@ mod tests {
     fn derivatives_behind_sensors_and_beside_drift_are_those_of_differences() {
         let decays = decays();
         let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
-        assert!(problem.weights[1] != 1.0 && problem.table().directions(0) > DIRECTIONS);
+        assert!(problem.weights[1] != 1.0 && problem.quantities().directions(0) > DIRECTIONS);
         require_derivatives(&problem, &values(&problem));
     }
 

@@ -85,7 +85,7 @@ impl Comparison {
             if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =
             self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
-        let is_explained = !preferred.structure().is_structured();
+        let is_explained = !preferred.residual_structure().is_structured();
         let is_alone = self.identifications().len() == 1;
         let sure = match (self.is_decided(), others.is_empty()) {
             _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),

@@ -10,8 +10,8 @@ use crate::residuals::rules::{HIGHEST_ORDER, PENALTY_OF_COEFFICIENT, RESIDUALS_P
 /// z_i = Σ_j a_j z_{i−j} + e_i,     j = 1 … p:        S(f) = σ_e²/|1 − Σ a_j e^{−2πi f j}|²
 /// ```
 ///
-/// The coefficients are those of Yule and Walker by Levinson's recursion. The order makes n ln σ_e² + 4 p smallest, with
-/// twice the penalty of Akaike's criterion, so that white noise seldom has a coefficient.
+/// The coefficients are those of Yule and Walker by Levinson's recursion. The order makes n ln σ_e² + 4 p smallest,
+/// with twice the penalty of Akaike's criterion, so that white noise seldom has a coefficient.
 ///
 /// # References
 /// H. Akaike, "Power spectrum estimation through autoregressive model fitting", Ann. Inst. Stat. Math. 21 (1969) 407,

@@ -22,8 +22,8 @@ pub(crate) struct Knowledge {
 }
 
 impl Knowledge {
-    /// That of `fit` with a `prior`, beside records with noise of standard deviation `noise`; `unit` is an element of
-    /// (JᵀJ)⁻¹, 0 for parameters that are not determined.
+    /// Knowledge in `fit` by a `prior`, beside records with noise of standard deviation `noise`; `unit` is an element
+    /// of (JᵀJ)⁻¹, 0 for parameters that are not determined.
     pub(crate) fn of(prior: &Prior, noise: f64, fit: &Fit, unit: impl Fn(usize, usize) -> f64) -> Self {
         let (count, indices) = (prior.len(), prior.indices());
         let precision = prior.precision();

@@ -1,5 +1,5 @@
-//! Noise of the records as the residuals of a fit show it: its growth with the signal, and its correlation from sample to
-//! sample.
+//! Noise of the records as the residuals of a fit show it: its growth with the signal, and its correlation from sample
+//! to sample.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

@@ -87,9 +87,9 @@ fn squared_amplitudes(signal: &[f64], period: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Sums of squares of the relative variances r²/σ² explained by a straight line in the first growing part, by one in the
-/// second, and by a plane in both. Half of such a sum is the statistic of Breusch and Pagan; a line that falls explains
-/// nothing.
+/// Sums of squares of the relative variances r²/σ² explained by a straight line in the first growing part, by one in
+/// the second, and by a plane in both. Half of such a sum is the statistic of Breusch and Pagan; a line that falls
+/// explains nothing.
 ///
 /// # References
 /// T. S. Breusch, A. R. Pagan, "A simple test for heteroscedasticity and random coefficient variation", Econometrica 47

@@ -70,8 +70,8 @@ pub(crate) const SIGNIFICANT: f64 = 2.33;
 /// Probability that noise alone looks like a drift (1). Origin: chosen.
 pub(crate) const CHANCE_OF_DRIFT: f64 = 1e-3;
 
-/// Residual over noise, without a drift, below which a drift may be all that is left (1). Origin: chosen; the parameters
-/// of the motion follow the drift by a little.
+/// Residual over noise, without a drift, below which a drift may be all that is left (1). Origin: chosen; the
+/// parameters of the motion follow the drift by a little.
 pub(crate) const NEAR_NOISE: f64 = 2.0;
 
 /// Frequencies between the harmonics of the motion that show its noise, in natural frequencies (1).

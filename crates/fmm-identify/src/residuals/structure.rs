@@ -126,7 +126,8 @@ impl Covariance {
         Ok(Self::of_noise(fit, structure, &columns, noise).with_knowledge(problem, fit))
     }
 
-    /// Adds prior knowledge: the elements hold the part by the residuals of the records, and the share of the knowledge.
+    /// Adds prior knowledge: the elements hold the part by the residuals of the records, and the share of the
+    /// knowledge.
     fn with_knowledge(mut self, problem: &Problem<'_>, fit: &Fit) -> Self {
         let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
         let unit = |i: usize, j: usize| Self::of_white_noise(fit, i, j).map_or(0.0, |covariance| covariance / variance);

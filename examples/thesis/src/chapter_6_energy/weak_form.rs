@@ -47,8 +47,8 @@ impl WeakForm {
         Self { mass, damping, stiffness: (2.0 * PI * oscillator.natural_frequency()).powi(2) }
     }
 
-    /// Friction force (N) in a velocity `record` without offset that begins at time 0, between `reversals`, times of zero
-    /// velocity (s).
+    /// Friction force (N) in a velocity `record` without offset that begins at time 0, between `reversals`, times of
+    /// zero velocity (s).
     pub(super) fn friction(&self, record: &Record, reversals: &[f64]) -> Found<f64> {
         Ok(self.solve(record, reversals, false)?[0])
     }

@@ -152,14 +152,14 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// This record with `values` of a channel called `name` that was measured beside the force, of which the force holds a
-    /// share: the actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged over
-    /// `seconds` around each sample, by the cubic of least squares; with 0 the values stay as they are. Noise that is
-    /// left in them makes shares a little too small.
+    /// This record with `values` of a channel called `name` that was measured beside the force, of which the force
+    /// holds a share: the actuator of a brake, the other end of a band, a second load cell. Hum and noise are averaged
+    /// over `seconds` around each sample, by the cubic of least squares; with 0 the values stay as they are. Noise that
+    /// is left in them makes shares a little too small.
     ///
     /// # Errors
-    /// Those of [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or a
-    /// time that is neither 0 nor between five samples and the whole record.
+    /// Those of [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for a name that is there or
+    /// a time that is neither 0 nor between five samples and the whole record.
     pub fn with_channel(mut self, name: &str, values: &[f64], seconds: f64) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, values, "channel", "of a force")?;
         if self.channels.iter().any(|(other, _)| other == name) {
@@ -182,8 +182,8 @@ impl ForceRecord {
         Ok(self)
     }
 
-    /// This record taken to be at rest up to `speed` (m/s), where a law that leaps has no value of friction. The default
-    /// is a thousandth of the largest speed.
+    /// This record taken to be at rest up to `speed` (m/s), where a law that leaps has no value of friction. The
+    /// default is a thousandth of the largest speed.
     ///
     /// # Errors
     /// [`IdentifyError::InvalidInput`] if the speed is negative or not finite.

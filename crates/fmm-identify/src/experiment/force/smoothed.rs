@@ -10,9 +10,9 @@ pub(crate) struct Smoothed {
 
 /// Neighbours to either side that are tried, the fewest first.
 const WIDTHS: [usize; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
-/// Power of the number of neighbours with which the rest that cubics leave may grow and still be noise (1). Where cubics
-/// do not follow the series it grows with the fourth power, for white noise not at all; the steps of a converter lie
-/// between.
+/// Power of the number of neighbours with which the rest that cubics leave may grow and still be noise (1). Where
+/// cubics do not follow the series it grows with the fourth power, for white noise not at all; the steps of a converter
+/// lie between.
 const GROWTH: f64 = 0.7;
 /// Most samples, spread over the series, by which the number of neighbours is chosen.
 const LOOKED_AT: usize = 2000;
@@ -87,8 +87,8 @@ fn cubic(times: &[f64], values: &[f64], at: usize, width: usize) -> Option<Cubic
         square += y * y;
     }
     let right = normal.map(|row| row[ORDER]);
-    // Positive definite: no pivot need be looked for. Columns that are alike to 1e-10, as a gap in the times makes them,
-    // determine a cubic all the same; the inverse of linear_algebra.rs would leave one of them out.
+    // Positive definite: no pivot need be looked for. Columns that are alike to 1e-10, as a gap in the times makes
+    // them, determine a cubic all the same; the inverse of linear_algebra.rs would leave one of them out.
     for pivot in 0..ORDER {
         if normal[pivot][pivot] <= 1e-14 {
             return None;

@@ -12,8 +12,8 @@ pub struct SpeedBin {
     pub speed: f64,
     /// Friction, in the unit of the force.
     pub friction: Estimated,
-    /// Force that does not change with the direction, half the sum of the two medians, in the same unit: the zero of the
-    /// sensor, gravity, or levels that differ by direction.
+    /// Force that does not change with the direction, half the sum of the two medians, in the same unit: the zero of
+    /// the sensor, gravity, or levels that differ by direction.
     pub offset: Estimated,
     /// Median normal load (N); `None` where none was measured.
     pub load: Option<f64>,
@@ -62,9 +62,9 @@ impl ForceRecord {
         self.bins((0..self.len()).collect(), count)
     }
 
-    /// Like [`friction_over_speed`](Self::friction_over_speed), for up to `loads` groups of the measured normal load with
-    /// as many samples each, light ones first: Stribeck's plot, friction by load over speed by load. Without a measured
-    /// load there is one group.
+    /// Like [`friction_over_speed`](Self::friction_over_speed), for up to `loads` groups of the measured normal load
+    /// with as many samples each, light ones first: Stribeck's plot, friction by load over speed by load. Without a
+    /// measured load there is one group.
     ///
     /// ```
     /// use fmm_identify::ForceRecord;
