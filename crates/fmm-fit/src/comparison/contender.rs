@@ -41,14 +41,6 @@ impl Contender {
         Self::new(name, regression.residuals(), regression.rank())
     }
 
-    /// Replaces the autocorrelation time, in samples, that was found over all residuals in a row; needed where they are
-    /// several series, such as one per record. Less than 1 counts as 1.
-    #[must_use]
-    pub fn with_autocorrelation_time(mut self, samples: f64) -> Self {
-        self.autocorrelation_time = samples.max(1.0);
-        self
-    }
-
     /// Says that the model called `name` is a special case of this one.
     #[must_use]
     pub fn containing(mut self, name: impl Into<String>) -> Self {

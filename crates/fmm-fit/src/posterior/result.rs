@@ -34,7 +34,6 @@ pub struct Posterior {
     parameters: Vec<Parameter>,
     free: Vec<usize>,
     chains: usize,
-    warm_up: usize,
     values: Vec<f64>,
     /// Standard deviation of a residual and correlation with its neighbour.
     noise: Vec<(f64, f64)>,
@@ -50,14 +49,13 @@ impl Posterior {
         parameters: &[Parameter],
         free: &[usize],
         chains: &[Chain],
-        (warm_up, is_correlated): (usize, bool),
+        is_correlated: bool,
         variance: ResidualVariance,
     ) -> Result<Self, FitError> {
         let mut posterior = Self {
             parameters: parameters.to_vec(),
             free: free.to_vec(),
             chains: chains.len(),
-            warm_up,
             values: chains.iter().flat_map(|chain| chain.values.iter().copied()).collect(),
             noise: chains.iter().flat_map(|chain| chain.noise.iter()).map(|(v, rho)| (v.sqrt(), *rho)).collect(),
             marginals: Vec::new(),
@@ -165,11 +163,6 @@ impl Posterior {
     /// Evaluations of the density with its gradient, those before the draws that count left out.
     pub fn evaluations(&self) -> usize {
         self.evaluations
-    }
-
-    /// Draws of each chain before those that count.
-    pub fn warm_up(&self) -> usize {
-        self.warm_up
     }
 
     /// Comparison with random walks without gradients; `None` if none were asked for.

@@ -308,8 +308,8 @@ impl Sampler {
         chains: &[Chain],
         walks: &[check::Walked],
     ) -> Result<Posterior, FitError> {
-        let sizes = (self.warm_up, self.is_correlated);
-        let posterior = Posterior::new(plan.target.parameters(), plan.target.free(), chains, sizes, self.variance)?;
+        let (parameters, free) = (plan.target.parameters(), plan.target.free());
+        let posterior = Posterior::new(parameters, free, chains, self.is_correlated, self.variance)?;
         if walks.is_empty() {
             return Ok(posterior);
         }
