@@ -6,9 +6,6 @@ use super::source::{crates, files, first_names, text, words};
 
 /// Names at a crate's root that nobody else names; the list only shrinks.
 const UNUSED: &[&str] = &[
-    "fmm_fit::Doubt",
-    "fmm_fit::ModelRow",
-    "fmm_fit::NestedComparison",
     "fmm_frf::Averaging",
     "fmm_frf::DampingTerm",
     "fmm_frf::Mode",

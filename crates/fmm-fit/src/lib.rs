@@ -78,7 +78,6 @@
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
 //! | are the residuals independent? | [`autocorrelation`], [`effective_count`] |
 //! | is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
-//! | which of several models? | [`ModelTable`] |
 //! | which measurements next? | [`Information`], [`DesignSearch`] |
 //! | which straight line, polynomial, columns? | [`StraightLine`], [`Polynomial`], [`LinearRegression`]: no start values |
 //! | a line with uncertainties in both variables? | [`YorkLine`] |
@@ -151,9 +150,7 @@ mod solver;
 mod starts;
 mod uncertainty;
 
-pub use comparison::contender::{ComparisonOptions, Contender, Criterion, ResidualCount};
-pub use comparison::model_comparison::{FTest, f_tail, f_test};
-pub use comparison::model_table::{Doubt, ModelRow, ModelTable, NestedComparison, Verdict};
+pub use comparison::{FTest, f_tail, f_test};
 pub use design::design_case::{DesignCase, DesignCriterion};
 pub use design::information::Information;
 pub use design::search::{ChosenDesign, DesignSearch};

@@ -1,6 +1,5 @@
 //! What the solver and what stands on it promise, beyond the numbers that the oracles hold.
 
-mod comparison;
 mod curvature;
 mod differences;
 mod refit;
