@@ -27,6 +27,8 @@ fn one_law_says_both_tensions() {
     let [by_motion, by_bands] = compared.identifications() else { panic!("{compared}") };
     assert_eq!(compared.preferred().law(), by_bands.law(), "{compared}");
     assert!(compared.is_decided() && compared.p_values()[0] < 1e-6, "{compared}");
+    // The sensor of a motion has no part in it.
+    assert!(!compared.to_string().contains("a filter in the sensor"), "{compared}");
     let share = |record: &ForceRecord| by_bands.validate(record).unwrap().share().unwrap();
     println!("{by_bands}");
     assert!(by_motion.validate(&tight).unwrap().share().unwrap() > 0.15);

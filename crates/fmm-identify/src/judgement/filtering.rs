@@ -41,7 +41,7 @@ pub(crate) fn filtering_sensor(
 }
 
 /// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that
-/// it leaves out; `None` if nothing is left to explain or a filter is known.
+/// it leaves out; `None` if nothing is left to explain, a filter is known or there is no vibration.
 ///
 /// # Errors
 /// Of a record that the filter leaves too little of, or of the fit.
@@ -50,7 +50,8 @@ pub(crate) fn behind_filter(
     identifications: &[Identification],
 ) -> Result<Option<(Identification, f64)>, IdentifyError> {
     let is_known = |decay: &Experiment| decay.sensor().low_pass().is_some() || decay.drive().is_some();
-    if decays.iter().any(is_known) {
+    // Forces along motions have no such sensor.
+    if decays.is_empty() || decays.iter().any(is_known) {
         return Ok(None);
     }
     let is_simple = |found: &&Identification| {

@@ -117,7 +117,10 @@ impl Comparison {
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}\n", self.headline())?;
+        writeln!(f, "{}", self.headline())?;
+        if !self.records().is_empty() {
+            writeln!(f)?;
+        }
         for (record, summary) in self.records().iter().enumerate() {
             let number = if self.records().len() > 1 { format!(" {}", record + 1) } else { String::new() };
             writeln!(f, "Record{number}: {summary}")?;
