@@ -100,7 +100,10 @@ fn a_refit_ends_where_a_fit_does_whoever_asked_before() {
     }
     let unknown = Refit::prepare(&problem, &solve(&problem, problem.values(), &Options::default()).unwrap()).unwrap();
     let error = unknown.varying(&["mass", "coefficient"]).unwrap_err().to_string();
-    assert!(error.starts_with("\"coefficient\" was not held in the fit; what was held: mass, stiffness,"), "{error}");
+    assert!(
+        error.starts_with("\"coefficient\" was not fixed in the fit; the fixed parameters are: mass, stiffness,"),
+        "{error}"
+    );
     assert!(refit.estimates(&[1.0]).is_err());
     assert!(refit.estimates(&[f64::NAN, 1982.0, 0.275]).is_err());
     assert!(refit.estimates(&[-10.0, 1982.0, 0.275]).is_err());

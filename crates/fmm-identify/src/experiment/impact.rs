@@ -69,7 +69,9 @@ impl Experiment {
         // An offset has no part in lines above zero frequency.
         let experiment = Self::of_trial(trial, Offset::Fixed(0.0))?;
         let frequency = experiment.guess.frequency();
-        let lines = trial.lines(band.unwrap_or((BAND.0 * frequency, BAND.1 * frequency)))?;
+        // Of the motion alone, so that the noise of one line tells nothing of the next.
+        let band = band.unwrap_or((BAND.0 * frequency, BAND.1 * frequency));
+        let lines = Lines::new(trial.motion().len(), trial.summary().rate, band)?;
         Ok(Self { lines: Some(Arc::new(lines)), ..experiment })
     }
 

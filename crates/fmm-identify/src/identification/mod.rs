@@ -424,12 +424,12 @@ impl Identification {
 
     /// The `decays`, which must be those of the identification, with what was fitted beside their motion.
     pub(crate) fn experiments(&self, decays: &[Experiment]) -> Result<Vec<Experiment>, IdentifyError> {
-        let samples = |decays: &[Experiment]| decays.iter().map(|decay| decay.summary().samples).sum::<usize>();
-        let (given, fitted) = (samples(decays), self.fitted.fit.residuals().len());
+        let given: usize = decays.iter().map(Experiment::rows).sum();
+        let fitted = self.fitted.fit.residuals().len() - self.covariance.known_beforehand();
         if decays.len() != self.motions.len() || given != fitted {
             let (count, expected) = (decays.len(), self.motions.len());
             return Err(IdentifyError::wrong_record(format!(
-                "the identification is that of {expected} record(s) with {fitted} samples, but {count} with {given} were given"
+                "the identification is that of {expected} record(s) with {fitted} residuals, but {count} with {given} were given"
             )));
         }
         Ok(as_fitted(decays, &self.disturbances))

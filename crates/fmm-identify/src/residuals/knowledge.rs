@@ -35,7 +35,12 @@ impl Knowledge {
         Self { sources: prior.sources().to_vec(), slopes, covariance: prior.covariance().to_vec() }
     }
 
-    /// Nothing was known beforehand.
+    /// Number of quantities that were known beforehand.
+    pub(crate) fn len(&self) -> usize {
+        self.sources.len()
+    }
+
+    /// True if nothing was known beforehand.
     pub(crate) fn is_empty(&self) -> bool {
         self.sources.is_empty()
     }

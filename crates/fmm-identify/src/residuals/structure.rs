@@ -144,6 +144,11 @@ impl Covariance {
         self
     }
 
+    /// Number of quantities that were known before the fit, each with a residual of its own.
+    pub(crate) fn known_beforehand(&self) -> usize {
+        self.knowledge.len()
+    }
+
     /// Share of prior knowledge in the variance of a quantity with this `gradient` over the first estimates, by source.
     pub(crate) fn of_knowledge(&self, gradient: &[f64]) -> Vec<(Source, f64)> {
         self.knowledge.parts(gradient)
