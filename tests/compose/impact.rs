@@ -33,6 +33,8 @@ const SAMPLES: usize = 330_000;
 /// Impulse (N s) and duration (intervals) of the impacts of 450 N, 1000 N and 1450 N.
 const LEVELS: [(f64, usize); 3] = [(0.98, 34), (1.42, 22), (1.64, 18)];
 
+const TRIALS_OF_A_LEVEL: usize = 3;
+
 /// Noise of force (N) and velocity (m/s).
 const FORCE_NOISE: f64 = 0.5;
 const NOISE: f64 = 2e-4;
@@ -99,13 +101,13 @@ fn impacts(trials: &[ImpactTrial]) -> Vec<Experiment> {
     trials.iter().map(|trial| Experiment::impact(trial).unwrap()).collect()
 }
 
-/// Ten noisy trials at each of the three levels.
+/// Noisy trials at each of the three levels.
 fn trials() -> &'static [ImpactTrial] {
     static TRIALS: OnceLock<Vec<ImpactTrial>> = OnceLock::new();
     TRIALS.get_or_init(|| {
         let level = |(index, (impulse, intervals)): (u64, &(f64, usize))| {
             let (force, velocity) = impact(*impulse, *intervals, DAMPING);
-            (0..10).map(move |seed| prepared(&measured(&force, &velocity, INTERVAL, 100 * index + seed)))
+            (0..TRIALS_OF_A_LEVEL as u64).map(move |seed| prepared(&measured(&force, &velocity, INTERVAL, 100 * index + seed)))
         };
         (0..).zip(&LEVELS).flat_map(level).collect()
     })
@@ -119,7 +121,7 @@ fn relative(found: &Identification) -> (f64, f64) {
 
 #[test]
 fn mobility_of_each_level_and_of_all() {
-    for (level, trials) in trials().chunks(10).enumerate().chain([(3, trials())]) {
+    for (level, trials) in trials().chunks(TRIALS_OF_A_LEVEL).enumerate().chain([(3, trials())]) {
         let found = identify::<Coulomb>(&machine(true), &mobilities(trials)).unwrap();
         let (error, u) = relative(&found);
         assert!(error.abs() < 1e-3 && error.abs() < 3.0 * u, "level {level}: μ is off by {error} ± {u}\n{found}");
@@ -133,9 +135,9 @@ fn mobility_of_each_level_and_of_all() {
     }
 }
 
-/// Of a trial at each level, as ten times as many of 330 000 samples take ten times as long.
+/// A trial at each level, as more of 330 000 samples take longer.
 fn few_trials() -> Vec<ImpactTrial> {
-    trials().iter().step_by(10).cloned().collect()
+    trials().iter().step_by(TRIALS_OF_A_LEVEL).cloned().collect()
 }
 
 #[test]
