@@ -107,7 +107,8 @@ fn trials() -> &'static [ImpactTrial] {
     TRIALS.get_or_init(|| {
         let level = |(index, (impulse, intervals)): (u64, &(f64, usize))| {
             let (force, velocity) = impact(*impulse, *intervals, DAMPING);
-            (0..TRIALS_OF_A_LEVEL as u64).map(move |seed| prepared(&measured(&force, &velocity, INTERVAL, 100 * index + seed)))
+            (0..TRIALS_OF_A_LEVEL as u64)
+                .map(move |seed| prepared(&measured(&force, &velocity, INTERVAL, 100 * index + seed)))
         };
         (0..).zip(&LEVELS).flat_map(level).collect()
     })
