@@ -108,8 +108,8 @@ pub trait LawFamily: 'static {
     }
 
     /// A family of the same laws by parameters that a fit finds in fewer steps; `None`, the default, for a family that
-    /// is fitted by its own parameters. No parameter of either may be a [`LevelAbove`](Role::LevelAbove) or a
-    /// [`Breakaway`](Role::Breakaway).
+    /// is fitted by its own parameters. No parameter of either may be a [`LevelAbove`](crate::Role::LevelAbove) or a
+    /// [`Breakaway`](crate::Role::Breakaway).
     fn reparametrisation<V: FamilyVisitor>(visitor: &mut V) -> Option<Reparametrisation<V::Output>> {
         let _ = visitor;
         None

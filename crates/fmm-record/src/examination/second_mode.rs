@@ -13,7 +13,7 @@ use crate::numerics::spectrum::component;
 /// A second vibration beside the one that moves most.
 ///
 /// There are two signs. A mode far from the first has a line of its own in the spectrum of the motion, or of its
-/// first half, quarter or eighth. The line must stand above the noise as in [`hum`](crate::hum()) and have 1 % of
+/// first half, quarter or eighth. The line must stand above the noise as in `hum` and have 1 % of
 /// the motion at least. At multiples of the first frequency friction and nonlinear restoring forces have harmonics;
 /// there it must be larger than harmonics of friction are. (If the period changes with the amplitude, time is
 /// measured in half cycles.)

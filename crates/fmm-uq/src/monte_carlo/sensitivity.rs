@@ -41,7 +41,7 @@ pub struct VarianceShare {
 /// S = Σ f(B) (f(A_B) − f(A))/(N V),   S_T = Σ (f(A) − f(A_B))²/(2 N V)
 /// ```
 ///
-/// A and B are independent sets of trials, A_B is A with one column of B. Trials come in blocks as in a [`MonteCarlo`]
+/// A and B are independent sets of trials, A_B is A with one column of B. Trials come in blocks as in a [`MonteCarlo`](crate::MonteCarlo)
 /// and give the same bits for any number of threads. Where the model fails for any of the n + 2 points of a row,
 /// the row is left out for all; `allowed_failures` is the share of rows for which that may happen.
 ///
