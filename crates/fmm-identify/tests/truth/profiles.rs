@@ -63,7 +63,7 @@ fn what_is_well_determined_is_straight() {
         identify_with::<CoulombViscous>(&Machine::per_unit_mass(), &terms, &decays).unwrap()
     });
     let other = found.profiles(&[noisy(&motion[..1000], 1)], LEVEL).unwrap_err();
-    assert!(other.to_string().contains("1500 samples"), "{other}");
+    assert!(other.to_string().contains("1500 residuals"), "{other}");
 }
 
 /// Without noise there is nothing to compare with.
