@@ -35,6 +35,14 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}
 
+// The sentences of errors are written by `alloc`, which names this too.
+// SAFETY: The one function of this name, never called, as a panic aborts.
+#[unsafe(no_mangle)]
+extern "C" fn _Unwind_Resume() -> ! {
+    // SAFETY: It ends the program, whatever its state is.
+    unsafe { abort() }
+}
+
 // What starts a program on the host.
 #[link(name = "c")]
 unsafe extern "C" {
