@@ -1,16 +1,17 @@
 //! The main job: friction parameters of one law out of ring-down records.
 
+pub(crate) mod beside;
 pub(crate) mod drift;
 mod findings;
 mod force;
 mod limits;
+mod motion;
 mod profile;
 
 use std::ops::ControlFlow;
 
 use fmm_fit::{Estimate, EvaluationError, Fit, Options, Progress};
 use fmm_friction::{LawFamily, Role};
-use fmm_sim::{Event, EventKind, Trajectory};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
@@ -36,51 +37,11 @@ use crate::residuals::structure::{Covariance, ResidualStructure};
 use crate::warning::Warning;
 
 pub use force::Validation;
+pub use motion::FittedMotion;
 pub use profile::{Profile, Profiles};
 
 /// Meanings of a level, of which an identification states some, the most wanted last.
 const LEVELS: [Level; 4] = [Level::PerMass, Level::Force, Level::Mu, Level::Coefficient];
-
-/// End of the fitted motion of one record.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FittedMotion {
-    stop_time: Option<f64>,
-    half_swings: usize,
-    narrowest: Option<(f64, f64)>,
-}
-
-impl FittedMotion {
-    /// The motion behind `trajectory`, which begins at `start` (s) on the time axis of a record sampled every
-    /// `interval` (s).
-    pub(crate) fn of_events(start: f64, interval: f64, trajectory: &Trajectory) -> Self {
-        // A velocity of nearly zero at the first sample reverses at once, or does not: that is no swing of the record.
-        let turns = |event: &&Event| matches!(event.kind, EventKind::Reversal | EventKind::Stop);
-        let begun = |event: &&Event| event.time > interval;
-        let decided = trajectory.events().iter().filter(turns).filter(begun);
-        let margins = decided.clone().map(|event| (event.margin(), start + event.time));
-        Self {
-            stop_time: trajectory.rest().map(|event| start + event.time),
-            half_swings: decided.count(),
-            narrowest: margins.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())),
-        }
-    }
-
-    /// Margin and time (s) of the most narrowly decided turning point of `motions`.
-    pub(crate) fn narrowest_decision(motions: &[Self]) -> Option<(f64, f64)> {
-        let decided = motions.iter().filter_map(|motion| motion.narrowest);
-        decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
-    }
-
-    /// When the contact stops for good, on the time axis of the record (s); `None` if it does not before the end.
-    pub fn stop_time(&self) -> Option<f64> {
-        self.stop_time
-    }
-
-    /// Number of times at which the velocity reaches zero.
-    pub fn half_swings(&self) -> usize {
-        self.half_swings
-    }
-}
 
 /// Friction parameters of one law, with their uncertainty and what limits them.
 ///
@@ -503,58 +464,6 @@ impl Identification {
             && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT)
     }
 
-    /// Residuals of this fit, and of `other`, at the samples that count for both; zero elsewhere.
-    fn residuals_beside(&self, other: &Self) -> [Vec<f64>; 2] {
-        let counts = |row: usize| [self, other].iter().all(|one| one.counts().is_none_or(|counts| counts[row]));
-        [self, other].map(|one| {
-            let residuals = one.fitted.fit.residuals().iter().enumerate();
-            residuals.map(|(row, residual)| if counts(row) { *residual } else { 0.0 }).collect()
-        })
-    }
-
-    /// True if the same samples count for this fit and for `other`.
-    pub(crate) fn counts_as(&self, other: &Self) -> bool {
-        self.counts() == other.counts()
-    }
-
-    /// Sum of squares of this fit less that of `other`, over the samples that count for both.
-    pub(crate) fn excess_beside(&self, other: &Self) -> f64 {
-        let floor = self.floor().max(other.floor());
-        let [own, theirs] = if self.counts_as(other) {
-            [self, other].map(|one| one.fitted.fit.sum_of_squares())
-        } else {
-            self.residuals_beside(other).map(|residuals| residuals.iter().map(|residual| residual * residual).sum())
-        };
-        own.max(floor) - theirs.max(floor)
-    }
-
-    /// Excess of this fit over that by `other`, in variances of the noise that the residuals of the other show in the
-    /// direction in which the laws differ (1), and the degrees of freedom with which that variance is known.
-    pub(crate) fn misfit_beside(&self, other: &Self) -> (f64, f64) {
-        let floor = self.floor().max(other.floor());
-        let excess = self.excess_beside(other);
-        let [own, theirs] = self.residuals_beside(other);
-        let difference: Vec<f64> = own.iter().zip(&theirs).map(|(own, theirs)| own - theirs).collect();
-        let rounding = floor / difference.len().max(1) as f64;
-        let variance = (other.noise().variance_along(&difference) * other.spread()).max(rounding);
-        let freedom = 2.0 * other.noise().ordinates_along(&difference);
-        let misfit = if excess > 0.0 && variance > 0.0 { excess / variance } else { 0.0 };
-        (misfit, freedom.min(other.fitted.fit.degrees_of_freedom() as f64).max(1.0))
-    }
-
-    /// The findings that mean the same in both, each with that of `other`: what has the same name, and the sliding
-    /// levels, which laws name as they like.
-    pub(crate) fn common_findings<'a>(&'a self, other: &'a Self) -> Vec<(&'a Finding, &'a Finding)> {
-        let (own, theirs) = (self.level_names(), other.level_names());
-        let same = |finding: &'a Finding| {
-            let name = finding.parameter().name();
-            let at = own.iter().position(|level| level == name);
-            let counterpart = at.map_or(name, |at| theirs.get(at).map_or(name, String::as_str));
-            other.finding(counterpart).map(|theirs| (finding, theirs))
-        };
-        self.findings.iter().filter_map(same).collect()
-    }
-
     /// Headline quantities: the friction at large speed and at rest, as coefficient, force or per mass, whichever is
     /// known; of a law without friction the damping.
     pub(crate) fn main_findings(&self) -> Vec<&Finding> {
@@ -586,9 +495,4 @@ impl Identification {
     pub(crate) fn floor(&self) -> f64 {
         (1e-12 * self.amplitude).powi(2) * self.fitted.fit.residuals().len() as f64
     }
-}
-
-/// The identification with the smallest residuals.
-pub(crate) fn closest<'a>(identifications: impl IntoIterator<Item = &'a Identification>) -> Option<&'a Identification> {
-    identifications.into_iter().min_by(|a, b| a.rms_residual().total_cmp(&b.rms_residual()))
 }

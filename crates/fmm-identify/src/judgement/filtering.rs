@@ -7,7 +7,8 @@ use fmm_fit::Options;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, Sensor};
 use crate::fit::stages::Begin;
-use crate::identification::{Identification, closest, identify_by};
+use crate::identification::beside::closest;
+use crate::identification::{Identification, identify_by};
 use crate::judgement::rules::{
     AS_GOOD, ENOUGH_SAMPLES, EXCESS_OF_FILTER, FILTER_ORDER, MOST_ITERATIONS_OF_FILTER, SHOWN_CORNER,
 };

@@ -11,7 +11,8 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::fit::stages::Near;
-use crate::identification::{Identification, closest};
+use crate::identification::Identification;
+use crate::identification::beside::closest;
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::rules::{
