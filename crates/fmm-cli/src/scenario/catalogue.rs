@@ -22,12 +22,7 @@ pub(crate) struct Entry {
     /// Its parameters.
     pub(crate) slots: fn() -> Vec<Slot>,
     make: fn(Given) -> Made,
-    /// True for a law of the sliding speed alone, which can be smoothed.
-    is_of_speed: bool,
 }
-
-/// Laws of the sliding speed that have another level while the speed falls.
-const OF_ACCELERATION: [&str; 2] = ["acceleration_coulomb", "exponential_pair"];
 
 /// Makes entries of families.
 struct AllEntries;
@@ -37,13 +32,11 @@ impl FamilyVisitor for AllEntries {
     type Output = Option<Entry>;
 
     fn visit<F: LawFamily>(&mut self) -> Option<Entry> {
-        let is_of_speed = match F::kind() {
-            LawKind::Elements => return None,
-            LawKind::Bristle => false,
-            LawKind::Sliding | LawKind::PiecewiseLinear => !OF_ACCELERATION.contains(&F::NAME),
-        };
+        if F::kind() == LawKind::Elements {
+            return None;
+        }
         let make = |given: Given| made(&given, |values| F::at(values).map(of_family::<F>));
-        Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make, is_of_speed })
+        Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make })
     }
 }
 
@@ -59,7 +52,6 @@ const MAXWELL_SLIP: Entry = Entry {
         let elements = given.pairs()?;
         made(&given, |_| MaxwellSlip::new(&elements).map(of_family::<MaxwellSlipOf<1>>))
     },
-    is_of_speed: false,
 };
 
 const GMS: Entry = Entry {
@@ -79,7 +71,6 @@ const GMS: Entry = Entry {
             Ok(Make { law, automatic: |scenario, sampling| Bristle::default().run(scenario, sampling) }.bristle())
         })
     },
-    is_of_speed: false,
 };
 
 const SMOOTHED: Entry = Entry {
@@ -88,9 +79,8 @@ const SMOOTHED: Entry = Entry {
     make: |mut given| {
         let (inner, law) = contact(given.inner()?)?;
         let Some(law) = law.sliding else {
-            let known = named(|entry| entry.is_of_speed);
             return Err(format!(
-                "the law {inner} has an internal state and cannot be smoothed in the speed; {known} can"
+                "the law {inner} has an internal state and cannot be smoothed in the speed; a law of the speed alone can, such as coulomb or stribeck"
             )
             .into());
         };
@@ -99,7 +89,6 @@ const SMOOTHED: Entry = Entry {
             Ok(Make { law, automatic: |scenario, sampling| RungeKutta::default().run(scenario, sampling) }.sliding())
         })
     },
-    is_of_speed: true,
 };
 
 /// A law of a family, moved by the engine that suits law and machine.
@@ -116,10 +105,9 @@ fn made(given: &Given, make: impl FnOnce(&[f64]) -> Result<Contact, LawError>) -
     Ok(make(&given.numbers()?).map_err(|error| format!("the law {}: {error}", given.law()))?)
 }
 
-/// The names of the laws of which this is true.
-fn named(is_meant: impl Fn(&Entry) -> bool) -> String {
-    let names: Vec<&str> = laws().iter().filter(|entry| is_meant(entry)).map(|entry| entry.name).collect();
-    names.join(", ")
+/// Names of all laws.
+fn names() -> String {
+    laws().iter().map(|entry| entry.name).collect::<Vec<_>>().join(", ")
 }
 
 /// The law of an object `{name: {parameter: value, …}}`, with its name.
@@ -127,7 +115,7 @@ fn named(is_meant: impl Fn(&Entry) -> bool) -> String {
 /// # Errors
 /// If there is no such law, or its parameters are not what it needs.
 pub(crate) fn contact(law: Entries) -> Result<(&'static str, Contact), Box<dyn Error>> {
-    let known = || format!("the laws are {}", named(|_| true));
+    let known = || format!("the laws are {}", names());
     let Ok([(name, Field::Object(parameters))]) = <[_; 1]>::try_from(law.0) else {
         let example = "{\"coulomb\": {\"mu\": 0.2}}";
         return Err(format!("a law is an object with one key, its name, such as {example}; {}", known()).into());

@@ -149,7 +149,7 @@ fn wrong_values_are_answered_with_what_would_be_right() {
         (law(r#"{"smoothed": {"law": {"coulomb": {}}, "width": 1}}"#), "coulomb needs coefficient"),
         (law(r#"{"smoothed": {"law": 1, "width": 1}}"#), "must be a law"),
         (law(r#"{"smoothed": {"law": {"dahl": {"mu": 1, "sigma": 1}}, "width": 1}}"#), "cannot be smoothed"),
-        (law(r#"{"smoothed": {"law": {"dahl": {"mu": 1, "sigma": 1}}, "width": 1}}"#), "makkar_dixon_shifted, regularised_stribeck, karnopp, smoothed can"),
+        (law(r#"{"smoothed": {"law": {"dahl": {"mu": 1, "sigma": 1}}, "width": 1}}"#), "a law of the speed alone can, such as coulomb or stribeck"),
         (law(r#"{"smoothed": {"law": {"acceleration_coulomb": {"mu1": 1, "mu2": 1}}, "width": 1}}"#), "depends on the acceleration"),
     ] {
         let message = refused(&scenario);
