@@ -15,7 +15,7 @@ use std::time::Duration;
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{Executor, KV, State};
 use clap::{Parser, ValueEnum};
-use fmm_cli::figure::{self, Layer, Panel, Role};
+use fmm_cli::figure::{self, Panel, Role};
 use fmm_fit::{
     Automatic, BoundedLevenbergMarquardt, EvaluationError, Fit, Joint, Loss, Model, Options, Residuals, Scale,
     solve_observed, solve_robust,
@@ -118,9 +118,11 @@ impl Regression {
     }
 
     fn panel(&self, x_label: &str, y_label: &str, name: &str, p: &[f64]) -> Panel {
-        Panel::new(x_label, y_label, 330.0)
-            .with(Layer::new(Role::Points, "data", self.points.clone()))
-            .with(Layer::new(Role::Fitted, name, self.curve(p)))
+        Panel::new(x_label, y_label, 330.0).with(Role::Points, "data", self.points.clone()).with(
+            Role::Fitted,
+            name,
+            self.curve(p),
+        )
     }
 }
 
@@ -223,8 +225,8 @@ fn strd(line: &Line) -> Result<Shown, Box<dyn Error>> {
         documents.push(document(fit));
     }
     let regression = problem.model();
-    let residuals = regression.points.iter().zip(far.residuals()).map(|((x, _), r)| (*x, -r)).collect();
-    let remainder = Panel::new("x", "residual", 210.0).with(Layer::new(Role::Residual, "data − fit", residuals));
+    let residuals = regression.points.iter().zip(far.residuals()).map(|((x, _), r)| (*x, -r));
+    let remainder = Panel::new("x", "residual", 210.0).with(Role::Residual, "data − fit", residuals);
     let panels = vec![regression.panel("", "y", "fit", far.values()), remainder];
     Ok(Shown { name: "strd", text, document: json!({ "starts": documents, "certified": CERTIFIED }), panels })
 }
@@ -273,7 +275,7 @@ fn robust(line: &Line) -> Result<Shown, Box<dyn Error>> {
     });
     let decay = problem.model();
     let panel = decay.panel("time / s", "y / V", "Tukey's biweight", robust.values());
-    let panel = panel.with(Layer::new(Role::Residual, "least squares", decay.curve(squares.values())));
+    let panel = panel.with(Role::Residual, "least squares", decay.curve(squares.values()));
     let document = json!({ "truth": truth, "least_squares": document(&squares), "tukey": of_tukey });
     Ok(Shown { name: "robust", text, document, panels: vec![panel] })
 }
@@ -366,7 +368,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         std::fs::create_dir_all(folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
         for shown in &all {
             let path = folder.join(shown.name).with_extension("svg");
-            figure::stacked(&path, &shown.panels)?;
+            std::fs::write(&path, figure::drawn(&shown.panels))?;
             eprintln!("figure: {}", path.display());
         }
     }

@@ -6,9 +6,9 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use crate::figure::{self, Cells, Layer, Panel, Role, label};
+use crate::figure::{Cells, Panel, Role, drawn, label};
 use crate::input::Given;
-use crate::output::{Output, drawn, print};
+use crate::output::{Output, print};
 use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
@@ -46,10 +46,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let modes = decay_modes(&record);
     let backbone = Backbone::of(&record, &options)?;
     let suggestion = backbone.suggestion();
-    if let Some(folder) = arguments.output.folder()? {
-        figure::stacked(&folder.join("backbone.svg"), &panels(&record, &backbone, &suggestion))?;
-        drawn(folder, "backbone.svg");
-    }
+    let picture = || drawn(&panels(&record, &backbone, &suggestion));
+    arguments.output.draw("backbone.svg", || Ok(vec![("backbone.svg", picture())]))?;
     let report = if arguments.output.json {
         format!("{:#}", document(&decay, &modes, &backbone, &suggestion))
     } else {
@@ -178,43 +176,43 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
         points.iter().map(|point| (point.amplitude.value, value(point))).collect()
     };
     let amplitude = label("amplitude", backbone.unit());
-    let measured = record.times().zip(record.values().iter().copied()).collect();
+    let measured = record.times().zip(record.values().iter().copied());
     let band = |of: fn(&BackbonePoint) -> Estimated, role: Role, panel: Panel| {
         [-1.0, 1.0].into_iter().fold(panel, |panel, sign| {
             let edge = move |point: &BackbonePoint| of(point).value + sign * 2.0 * of(point).uncertainty;
-            panel.with(Layer::new(role, "", against(&edge)))
+            panel.with(role, "", against(&edge))
         })
     };
-    let frequency = Panel::new(amplitude.clone(), "f / Hz", 300.0).with(Layer::new(
+    let frequency = Panel::new(amplitude.clone(), "f / Hz", 300.0).with(
         Role::Points,
         "frequency, lines at two standard uncertainties",
         against(&|point| point.frequency.value),
-    ));
-    let damping = Panel::new(amplitude, label("c/m", "1/s"), 300.0).with(Layer::new(
+    );
+    let damping = Panel::new(amplitude, label("c/m", "1/s"), 300.0).with(
         Role::Points,
         "equivalent damping, lines at two standard uncertainties",
         against(&|point| point.damping.value),
-    ));
-    let damping = band(|point| point.damping, Role::MeasuredAgain, damping);
+    );
+    let damping = band(|point| point.damping, Role::Measured, damping);
     let mut panels = vec![
-        Panel::new("frequency / Hz", "level / dB", 300.0).with(Layer::new(Role::Residual, "spectrum", lines.collect())),
+        Panel::new("frequency / Hz", "level / dB", 300.0).with(Role::Residual, "spectrum", lines),
         Panel::new("time / s", label("record", record.unit()), 300.0)
-            .with(Layer::new(Role::Measured, "measured", measured))
-            .with(Layer::new(Role::Fitted, "envelope of the mode", envelope(1.0)))
-            .with(Layer::new(Role::FittedAgain, "", envelope(-1.0))),
-        band(|point| point.frequency, Role::MeasuredAgain, frequency).with(Layer::new(
+            .with(Role::Measured, "measured", measured)
+            .with(Role::Fitted, "envelope of the mode", envelope(1.0))
+            .with(Role::Fitted, "", envelope(-1.0)),
+        band(|point| point.frequency, Role::Measured, frequency).with(
             Role::Fitted,
             suggestion.model(),
-            against(&sprung).into_iter().filter(|(_, f)| f.is_finite()).collect(),
-        )),
-        damping.with(Layer::new(Role::Fitted, suggestion.model(), against(&said))),
+            against(&sprung).into_iter().filter(|(_, f)| f.is_finite()),
+        ),
+        damping.with(Role::Fitted, suggestion.model(), against(&said)),
     ];
     // One mode alone has nothing to interact with.
     let own: Vec<DecayMode> = decay_modes(record).into_iter().filter(|mode| mode.multiple.is_none()).collect();
     if let (true, Some(cells)) = (own.len() > 1, spectrogram(record, &own)) {
-        let path = points.iter().map(|point| (point.time, point.frequency.value)).collect();
+        let path = points.iter().map(|point| (point.time, point.frequency.value));
         let panel = Panel::new("time / s", "frequency / Hz", 340.0).over(cells);
-        panels.insert(2, panel.with(Layer::new(Role::Fitted, "frequency of the mode; the darker, the stronger", path)));
+        panels.insert(2, panel.with(Role::Fitted, "frequency of the mode; the darker, the stronger", path));
     }
     panels
 }

@@ -2,7 +2,6 @@
 //!
 //! Grey is what was measured, red is what was fitted, ink is what is left over.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use kuva::backend::svg::SvgBackend;
@@ -43,20 +42,12 @@ pub fn label(quantity: impl std::fmt::Display, unit: &str) -> String {
 pub enum Role {
     /// A measured curve.
     Measured,
-    /// Another measured curve, without an entry in the legend.
-    MeasuredAgain,
     /// A fitted curve.
     Fitted,
-    /// A fitted curve, mirrored or repeated: drawn without a legend entry of its own.
-    FittedAgain,
     /// Residuals of a fit.
     Residual,
-    /// More residuals, without an entry in the legend.
-    ResidualAgain,
     /// A second model or a truth to compare with.
     Reference,
-    /// Another reference, without an entry in the legend.
-    ReferenceAgain,
     /// Single measured points.
     Points,
     /// Single fitted points.
@@ -66,46 +57,42 @@ pub enum Role {
 }
 
 impl Role {
-    fn is_points(self) -> bool {
-        matches!(self, Self::Points | Self::FittedPoints | Self::ResidualPoints)
-    }
-
-    fn is_repeated(self) -> bool {
-        matches!(self, Self::FittedAgain | Self::MeasuredAgain | Self::ResidualAgain | Self::ReferenceAgain)
+    /// Colour, and width of the line (px) unless it is single points.
+    fn style(self) -> (&'static str, Option<f64>) {
+        match self {
+            Self::Measured => (MEASURED, Some(2.4)),
+            Self::Fitted => (FITTED, Some(1.1)),
+            Self::Residual => (RESIDUAL, Some(0.8)),
+            Self::Reference => (RESIDUAL, Some(1.4)),
+            Self::Points => (MEASURED, None),
+            Self::FittedPoints => (FITTED, None),
+            Self::ResidualPoints => (RESIDUAL, None),
+        }
     }
 }
 
 /// One curve or set of points.
 #[derive(Debug, Clone)]
-pub struct Layer {
+struct Layer {
     role: Role,
     label: String,
     points: Vec<(f64, f64)>,
 }
 
 impl Layer {
-    /// A layer with its legend text.
-    pub fn new(role: Role, label: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { role, label: label.into(), points: if role.is_points() { points } else { thinned(points) } }
-    }
-
     fn plot(&self) -> Plot {
-        let (color, width) = match self.role {
-            Role::Measured | Role::MeasuredAgain => (MEASURED, 2.4),
-            Role::Fitted | Role::FittedAgain => (FITTED, 1.1),
-            Role::Residual | Role::ResidualAgain => (RESIDUAL, 0.8),
-            Role::Reference | Role::ReferenceAgain => (RESIDUAL, 1.4),
-            Role::Points => return self.dots(MEASURED),
-            Role::FittedPoints => return self.dots(FITTED),
-            Role::ResidualPoints => return self.dots(RESIDUAL),
-        };
-        let line = LinePlot::new().with_data(self.points.clone()).with_color(color).with_stroke_width(width);
-        Plot::Line(if self.role.is_repeated() { line } else { line.with_legend(self.label.as_str()) })
-    }
-
-    fn dots(&self, color: &str) -> Plot {
-        let points = ScatterPlot::new().with_data(self.points.clone()).with_color(color).with_size(3.5);
-        Plot::Scatter(points.with_legend(self.label.as_str()))
+        let (color, width) = self.role.style();
+        let (points, label) = (self.points.clone(), self.label.as_str());
+        match width {
+            Some(width) => {
+                let line = LinePlot::new().with_data(points).with_color(color).with_stroke_width(width);
+                Plot::Line(if label.is_empty() { line } else { line.with_legend(label) })
+            }
+            None => {
+                let dots = ScatterPlot::new().with_data(points).with_color(color).with_size(3.5);
+                Plot::Scatter(if label.is_empty() { dots } else { dots.with_legend(label) })
+            }
+        }
     }
 }
 
@@ -147,10 +134,15 @@ impl Panel {
         Self { x_label: x_label.into(), y_label: y_label.into(), height, cells: None, layers: Vec::new() }
     }
 
-    /// The same axes with another layer on top.
+    /// The same axes with a curve or single points on top. The legend has each text once, and no empty one.
     #[must_use]
-    pub fn with(mut self, layer: Layer) -> Self {
-        self.layers.push(layer);
+    pub fn with(mut self, role: Role, label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let (mut label, points) = (label.into(), points.into_iter().collect());
+        if self.layers.iter().any(|layer| layer.label == label) {
+            label.clear();
+        }
+        let points = if role.style().1.is_some() { thinned(points) } else { points };
+        self.layers.push(Layer { role, label, points });
         self
     }
 
@@ -167,7 +159,7 @@ impl Panel {
 
     /// Share of the data's range that the legend needs above it.
     fn headroom(&self) -> f64 {
-        let entries = self.layers.iter().filter(|layer| !layer.role.is_repeated()).count();
+        let entries = self.layers.iter().filter(|layer| !layer.label.is_empty()).count();
         let share = (LINE * (entries as f64 + 0.8) / (self.height - AROUND).max(LINE)).min(0.6);
         HEADROOM.max(1.05 * share / (1.0 - share))
     }
@@ -197,14 +189,6 @@ impl Panel {
             .with_x_tick_format(ticks(x_high - x_low))
             .with_y_tick_format(ticks((1.05 + headroom) * span))
     }
-}
-
-/// Draws panels one below the other into an SVG file.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn stacked(path: &Path, panels: &[Panel]) -> std::io::Result<()> {
-    std::fs::write(path, drawn(panels))
 }
 
 /// Panels one below the other, as SVG.
@@ -237,16 +221,8 @@ pub fn drawn_corner(rows: &[Vec<Panel>]) -> String {
     renumbered(&SvgBackend.render_scene(&grid.with_cell_size(1.25 * height, height).render()))
 }
 
-/// Draws the histogram of `values` with the normal density of the same mean and standard deviation.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn histogram(path: &Path, x_label: &str, name: &str, values: &[f64]) -> std::io::Result<()> {
-    std::fs::write(path, drawn_histogram(x_label, name, values))
-}
-
 /// The histogram of `values` with the normal density of the same mean and standard deviation, as SVG.
-pub fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
+pub fn histogram(x_label: &str, name: &str, values: &[f64]) -> String {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let deviation = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
@@ -272,7 +248,7 @@ pub fn drawn_histogram(x_label: &str, name: &str, values: &[f64]) -> String {
     let top = normal.iter().map(|point| point.1).chain(density.iter().copied()).fold(0.0, f64::max);
     let plots = vec![
         Plot::Histogram(Histogram::from_bins(edges, density).with_color(MEASURED).with_legend(name)),
-        Layer::new(Role::Fitted, "normal density", normal).plot(),
+        Layer { role: Role::Fitted, label: "normal density".to_owned(), points: normal }.plot(),
     ];
     let layout = styled(Layout::auto_from_plots(&plots))
         .with_x_label(x_label)
@@ -379,8 +355,7 @@ mod tests {
     #[test]
     fn the_same_picture_has_the_same_bytes() {
         let panels = || {
-            let panel =
-                |y| Panel::new("x", "y", 200.0).with(Layer::new(Role::Fitted, "line", vec![(0.0, 0.0), (1.0, y)]));
+            let panel = |y| Panel::new("x", "y", 200.0).with(Role::Fitted, "line", [(0.0, 0.0), (1.0, y)]);
             drawn(&[panel(1.0), panel(2.0)])
         };
         let first = panels();

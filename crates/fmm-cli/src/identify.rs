@@ -6,18 +6,18 @@
 
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::figure;
+use crate::figure::{drawn, histogram, label};
 use crate::files;
 use crate::input::{Choice, Given, Question};
-use crate::output::{Output, drawn, print, print_json, spinner};
+use crate::output::{Output, print, print_json, spinner};
 use crate::posterior::Posterior;
 use crate::report::{self, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, ImpactTrial, Preparation};
-use fmm_record::{Column, Quantity, Record, Request};
+use fmm_record::{Column, Quantity, Record};
 use serde::Serialize;
 
 /// Identifies the friction of a machine from the record of its free vibration.
@@ -65,9 +65,8 @@ fn band(text: &str) -> Result<(f64, f64), String> {
 /// The force that was measured in `channel` of the file.
 fn measured(arguments: &Arguments, channel: &Column, quantity: Option<Quantity>) -> Result<Record, Box<dyn Error>> {
     let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
-    let request = quantity.map_or_else(Request::default, |quantity| Request::default().quantity(quantity));
-    let (time, rate) = (arguments.given.time.clone(), arguments.given.rate);
-    let choice = Choice { channel: Some(channel.clone()), time, rate, request, is_drive: true, ..Choice::default() };
+    let (time, rate) = (arguments.given.choice.time.clone(), arguments.given.choice.rate);
+    let choice = Choice { channel: Some(channel.clone()), time, rate, quantity, is_drive: true, ..Choice::default() };
     Ok(choice.read(file)?.record)
 }
 
@@ -113,14 +112,15 @@ fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -
     comparison
 }
 
-/// Writes the record with the preferred fit, the decay of its amplitude, and the residuals as figures.
-fn draw(folder: &Path, decay: &Experiment, comparison: &Comparison) -> Result<(), Box<dyn Error>> {
-    let pictures = Pictures::of(decay, comparison)?;
-    figure::stacked(&folder.join("fit.svg"), &pictures.fit)?;
-    figure::stacked(&folder.join("amplitude.svg"), &pictures.amplitude)?;
-    let unit = figure::label("residual", decay.record().unit());
-    figure::histogram(&folder.join("residuals.svg"), &unit, "residuals", &pictures.residuals)?;
-    Ok(())
+/// The record with the preferred fit, the decay of its amplitude, and the residuals.
+fn pictures(found: &Found) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
+    let pictures = Pictures::of(&found.decay, &found.comparison)?;
+    let unit = label("residual", found.decay.record().unit());
+    Ok(vec![
+        ("fit.svg", drawn(&pictures.fit)),
+        ("amplitude.svg", drawn(&pictures.amplitude)),
+        ("residuals.svg", histogram(&unit, "residuals", &pictures.residuals)),
+    ])
 }
 
 /// Document for programs: the comparison, and the posterior if there is one.
@@ -154,7 +154,7 @@ pub(crate) fn compare(arguments: &Arguments, command: &str) -> Result<(), Box<dy
 
 /// `command` is what was typed.
 fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> Result<(), Box<dyn Error>> {
-    let folder = arguments.output.folder()?;
+    arguments.output.folder()?;
     if let (true, Some(refusal)) = (arguments.posterior, Posterior::REFUSAL) {
         return Err(refusal.into());
     }
@@ -180,10 +180,7 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
             print(posterior.text())?;
         }
     }
-    if let Some(folder) = folder {
-        draw(folder, &found.decay, &found.comparison)?;
-        drawn(folder, "{fit,amplitude,residuals}.svg");
-    }
+    arguments.output.draw("{fit,amplitude,residuals}.svg", || pictures(&found))?;
     if let Some(path) = &arguments.report {
         let page = report::document(&found, arguments.given.bytes()?.as_ref(), command)?;
         std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;

@@ -29,11 +29,20 @@ impl Output {
         self.figures.as_deref().map(create_folder).transpose()?;
         Ok(self.figures.as_deref())
     }
-}
 
-/// Says which figures were written.
-pub(crate) fn drawn(folder: &Path, names: &str) {
-    eprintln!("figures: {}", folder.join(names).display());
+    /// Writes pictures (name of the file and SVG), if they are asked for, and says so by their `names`.
+    pub(crate) fn draw<N: AsRef<Path>>(
+        &self,
+        names: &str,
+        pictures: impl FnOnce() -> Result<Vec<(N, String)>, Box<dyn Error>>,
+    ) -> Result<(), Box<dyn Error>> {
+        let Some(folder) = self.folder()? else { return Ok(()) };
+        for (name, svg) in pictures()? {
+            std::fs::write(folder.join(name), svg)?;
+        }
+        eprintln!("figures: {}", folder.join(names).display());
+        Ok(())
+    }
 }
 
 /// Prints a result and the end of its line.

@@ -15,15 +15,6 @@ use crate::input::Question;
 /// The usual law with its viscous part as damping of the machine.
 const OF_MACHINE: &str = "coulomb + linear";
 
-/// Outcome of a joint fit.
-#[derive(Debug, Clone, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Joint {
-    Found(Together),
-    /// Why the records cannot be fitted together.
-    Refused(String),
-}
-
 /// Findings of all records as one.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Together {
@@ -37,26 +28,9 @@ pub(crate) struct Together {
     pub(crate) warnings: Vec<String>,
 }
 
-impl Joint {
+impl Together {
     /// Fits all records that were identified; `show` sees each trial step.
     pub(crate) fn of(
-        campaign: &Campaign,
-        rows: &[Row],
-        show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
-    ) -> Self {
-        Together::of(campaign, rows, show).map_or_else(|error| Self::Refused(error.to_string()), Self::Found)
-    }
-
-    pub(crate) fn found(&self) -> Option<&Together> {
-        match self {
-            Self::Found(together) => Some(together),
-            Self::Refused(_) => None,
-        }
-    }
-}
-
-impl Together {
-    fn of(
         campaign: &Campaign,
         rows: &[Row],
         show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,

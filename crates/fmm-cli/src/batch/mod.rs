@@ -28,8 +28,8 @@ use rayon::prelude::*;
 use crate::files;
 use crate::output::{print, spinner};
 use campaign::Campaign;
-use joint::Joint;
-use row::Row;
+use joint::Together;
+use row::{Outcome, Row};
 use summary::Summary;
 
 /// Identifies many records.
@@ -108,15 +108,15 @@ impl Asked {
 }
 
 /// Fits all records together while a line on standard error shows how far that is.
-fn joint(campaign: &Campaign, rows: &[Row]) -> Result<Joint, Box<dyn Error>> {
+fn joint(campaign: &Campaign, rows: &[Row]) -> Result<Outcome<Together>, Box<dyn Error>> {
     let bar = spinner()?;
     let show = |law: &str, progress: &Progress<'_>| {
         bar.set_message(format!("joint fit by {law}: step {}", progress.iterations()));
         ControlFlow::Continue(())
     };
-    let joint = Joint::of(campaign, rows, show);
+    let joint = Together::of(campaign, rows, show);
     bar.finish_and_clear();
-    Ok(joint)
+    Ok(joint.into())
 }
 
 /// The law that is fitted to all records unless another one is asked for.

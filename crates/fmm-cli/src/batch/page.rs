@@ -10,7 +10,7 @@ use super::row::{Outcome, Row, quantities};
 use super::sheet::Field;
 use super::summary::{Quantity, Summary};
 use super::table::{doubt_lines, group_lines, joint_lines, quantity_text, statement};
-use crate::figure::{Layer, Panel, Role, drawn, label};
+use crate::figure::{Panel, Role, drawn, label};
 use crate::page::{
     cell, escaped, figure, optional_cell, page as whole_page, paragraphs, row_heading, section, table, text_cell,
 };
@@ -136,11 +136,11 @@ fn dependences(summary: &Summary) -> String {
         let Some(Line { band, .. }) = line else { return format!("<p>{}</p>\n", escaped(statement)) };
         let name = against.replace('_', " ");
         let x_label = if against_unit.is_empty() { name } else { label(name, against_unit) };
-        let part = |value: fn(&(f64, f64, f64, f64)) -> f64| band.iter().map(|at| (at.0, value(at))).collect();
+        let part = |value: fn(&(f64, f64, f64, f64)) -> f64| band.iter().map(move |at| (at.0, value(at)));
         let panel = with_records(Panel::new(x_label, label(quantity.replace('_', " "), unit), 300.0), points)
-            .with(Layer::new(Role::Fitted, "line, with an effect of each record", part(|at| at.1)))
-            .with(Layer::new(Role::Reference, "its 95 % interval", part(|at| at.2)))
-            .with(Layer::new(Role::ReferenceAgain, "", part(|at| at.3)));
+            .with(Role::Fitted, "line, with an effect of each record", part(|at| at.1))
+            .with(Role::Reference, "its 95 % interval", part(|at| at.2))
+            .with(Role::Reference, "", part(|at| at.3));
         figure(&drawn(&[panel]), statement, &format!("dependence-{index}"))
     });
     format!(
@@ -172,12 +172,13 @@ fn sheet(summary: &Summary) -> String {
 
 /// Records as points (place, value, standard uncertainty) with bars of two standard uncertainties.
 fn with_records(panel: Panel, points: &[(f64, f64, f64)]) -> Panel {
-    let dots = points.iter().map(|(x, y, _)| (*x, *y)).collect();
-    let panel = panel.with(Layer::new(Role::Points, "records, with two standard uncertainties", dots));
+    let dots = points.iter().map(|(x, y, _)| (*x, *y));
+    let panel = panel.with(Role::Points, "records, with two standard uncertainties", dots);
     // Of many, bars say nothing and weigh much.
-    points.iter().filter(|_| points.len() <= 100).fold(panel, |panel, (x, y, u)| {
-        panel.with(Layer::new(Role::MeasuredAgain, "", vec![(*x, y - 2.0 * u), (*x, y + 2.0 * u)]))
-    })
+    points
+        .iter()
+        .filter(|_| points.len() <= 100)
+        .fold(panel, |panel, (x, y, u)| panel.with(Role::Measured, "", [(*x, y - 2.0 * u), (*x, y + 2.0 * u)]))
 }
 
 /// Each record's value, and the consensus with its interval.
@@ -187,12 +188,12 @@ fn picture(rows: &[Row], quantity: &Quantity, index: usize) -> String {
         Some((place as f64 + 1.0, value.value, value.u?))
     });
     let told: Vec<(f64, f64, f64)> = told.collect();
-    let ends = |value: f64| vec![(1.0, value), (rows.len() as f64, value)];
+    let ends = |value: f64| [(1.0, value), (rows.len() as f64, value)];
     let [low, high] = quantity.interval_95;
     let panel = Panel::new("number of the record", label(quantity.name.replace('_', " "), &quantity.unit), 280.0);
     let panel = with_records(panel, &told)
-        .with(Layer::new(Role::Fitted, "consensus", ends(quantity.mean)))
-        .with(Layer::new(Role::Reference, "its 95 % interval", ends(low)))
-        .with(Layer::new(Role::ReferenceAgain, "", ends(high)));
+        .with(Role::Fitted, "consensus", ends(quantity.mean))
+        .with(Role::Reference, "its 95 % interval", ends(low))
+        .with(Role::Reference, "", ends(high));
     figure(&drawn(&[panel]), &statement(quantity), &format!("quantity-{index}"))
 }

@@ -22,15 +22,31 @@ pub(crate) struct Row {
     /// Description by column of the manifest.
     pub(crate) description: BTreeMap<String, String>,
     #[serde(flatten)]
-    pub(crate) outcome: Outcome,
+    pub(crate) outcome: Outcome<Found>,
 }
 
 /// Findings, or the reason of a refusal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Outcome {
-    Found(Found),
+pub(crate) enum Outcome<T> {
+    Found(T),
     Refused(String),
+}
+
+impl<T> Outcome<T> {
+    /// The findings, unless there was a refusal.
+    pub(crate) fn found(&self) -> Option<&T> {
+        match self {
+            Self::Found(found) => Some(found),
+            Self::Refused(_) => None,
+        }
+    }
+}
+
+impl<T> From<Result<T, Box<dyn Error>>> for Outcome<T> {
+    fn from(result: Result<T, Box<dyn Error>>) -> Self {
+        result.map_or_else(|error| Self::Refused(error.to_string()), Self::Found)
+    }
 }
 
 /// Findings of one record.
@@ -91,17 +107,13 @@ impl Row {
     /// Identifies the record of this index.
     pub(crate) fn of(campaign: &Campaign, index: usize) -> Self {
         let entry = &campaign.entries[index];
-        let found = campaign.record(index).and_then(|record| found(&record));
-        let outcome = found.map_or_else(|error| Outcome::Refused(error.to_string()), Outcome::Found);
+        let outcome = campaign.record(index).and_then(|record| found(&record)).into();
         Self { file: entry.file.clone(), description: entry.description.clone(), outcome }
     }
 
     /// Findings of the record, unless it was refused.
     pub(crate) fn found(&self) -> Option<&Found> {
-        match &self.outcome {
-            Outcome::Found(found) => Some(found),
-            Outcome::Refused(_) => None,
-        }
+        self.outcome.found()
     }
 
     /// Refuses all but the first of rows with equal samples: copies are no further evidence.
@@ -164,8 +176,8 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     let comparison =
         record.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;
     let preferred = comparison.preferred();
-    let gain =
-        Some((Source::Gain, record.given.scale.unwrap_or(1.0), record.question.scale_u)).filter(|gain| gain.2 > 0.0);
+    let gain = Some((Source::Gain, record.given.choice.scale.unwrap_or(1.0), record.question.scale_u))
+        .filter(|gain| gain.2 > 0.0);
     let stated = record.question.stated().chain(gain);
     let doubts = comparison
         .warnings()

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::campaign::Campaign;
 use super::dependence::{Dependence, FRICTION, dependences};
-use super::joint::{Joint, Together};
-use super::row::{Row, Told, quantities};
+use super::joint::Together;
+use super::row::{Outcome, Row, Told, quantities};
 use super::shared::{Parted, SharedPart};
 use super::sheet::Field;
 
@@ -25,7 +25,7 @@ pub(crate) struct Summary {
     /// Friction against what differs between the records.
     pub(crate) dependences: Vec<Dependence>,
     /// All records fitted together, where that is asked for.
-    pub(crate) joint: Option<Joint>,
+    pub(crate) joint: Option<Outcome<Together>>,
     /// The record sheet, where the manifest has one.
     pub(crate) sheet: Option<Vec<Field>>,
 }
@@ -92,8 +92,8 @@ pub(crate) struct ByGroup {
 
 impl Summary {
     /// Of all rows, with friction `against` these columns, and what a joint fit said if there was one.
-    pub(crate) fn of(campaign: &Campaign, rows: &[Row], against: &[String], joint: Option<Joint>) -> Self {
-        let together = joint.as_ref().and_then(Joint::found);
+    pub(crate) fn of(campaign: &Campaign, rows: &[Row], against: &[String], joint: Option<Outcome<Together>>) -> Self {
+        let together = joint.as_ref().and_then(Outcome::found);
         let of = |quantity| Quantity::of(campaign, rows, together, quantity);
         let doubted = |row: &Row| {
             let doubts = row.found().map(|found| found.doubts.clone()).filter(|doubts| !doubts.is_empty())?;

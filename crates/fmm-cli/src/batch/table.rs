@@ -6,7 +6,6 @@ use std::fmt::Write;
 use fmm_model::Rounded;
 
 use super::campaign::Campaign;
-use super::joint::Joint;
 use super::row::{Found, Outcome, Row, Told, in_unit, quantities};
 use super::sheet::Field;
 use super::summary::{ByGroup, Quantity, Summary};
@@ -100,8 +99,8 @@ fn named_value(told: &Told) -> String {
 pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     let together = match &summary.joint {
         None => return Vec::new(),
-        Some(Joint::Refused(why)) => return vec![format!("no joint fit: {why}")],
-        Some(Joint::Found(together)) => together,
+        Some(Outcome::Refused(why)) => return vec![format!("no joint fit: {why}")],
+        Some(Outcome::Found(together)) => together,
     };
     let values: Vec<String> = together.findings.iter().map(named_value).collect();
     let load = together.reference_load.map_or_else(String::new, |load| {

@@ -360,7 +360,9 @@ fn a_joint_fit_says_what_it_takes_for_granted() {
     let [_, toml] = three_loads(&home);
     let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
     let rows = rows(&campaign);
-    let joint = |campaign: &Campaign, rows: &[Row]| Joint::of(campaign, rows, |_, _| ControlFlow::Continue(()));
+    let joint = |campaign: &Campaign, rows: &[Row]| {
+        Outcome::from(Together::of(campaign, rows, |_, _| ControlFlow::Continue(())))
+    };
     let found = joint(&campaign, &rows);
     let together = found.found().unwrap_or_else(|| panic!("{found:?}"));
     assert_eq!((together.records, together.law.as_str(), together.reference_load), (6, "coulomb + linear", Some(2.0)));
@@ -380,8 +382,8 @@ fn a_joint_fit_says_what_it_takes_for_granted() {
     assert!(page::page(&campaign, &rows, &summary).contains("<h2>Joint fit</h2>"));
 
     let refused = |campaign: &Campaign, rows: &[Row]| match joint(campaign, rows) {
-        Joint::Refused(why) => why,
-        Joint::Found(together) => panic!("{together:?}"),
+        Outcome::Refused(why) => why,
+        Outcome::Found(together) => panic!("{together:?}"),
     };
     let mut other = campaign.clone();
     let mass = other.entries[3].options.iter_mut().find(|option| option.starts_with("--mass=")).unwrap();

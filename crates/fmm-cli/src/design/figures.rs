@@ -1,24 +1,14 @@
 //! Pictures of a plan: the uncertainty against each number that the tests vary.
 
-use std::path::Path;
-
 use super::Answer;
 use super::candidates::unit;
-use crate::figure::{Layer, Panel, Role, label, stacked};
+use crate::figure::{Panel, Role, drawn, label};
 
 /// Uncertainties above this multiple of the smallest are left out of a picture (1).
 const IN_SIGHT: f64 = 20.0;
 
 /// One panel for each number of which the tests have several: every test, the best at each value, and those chosen.
-///
-/// # Errors
-/// If the file cannot be written.
-pub(super) fn draw(folder: &Path, answer: &Answer) -> std::io::Result<()> {
-    let panels = panels(answer);
-    if panels.is_empty() { Ok(()) } else { stacked(&folder.join("design.svg"), &panels) }
-}
-
-fn panels(answer: &Answer) -> Vec<Panel> {
+pub(super) fn picture(answer: &Answer) -> Option<(&'static str, String)> {
     let least = answer.tests.iter().filter_map(|test| test.u).fold(f64::INFINITY, f64::min);
     let mut names: Vec<&'static str> = answer.tests.iter().flat_map(|test| test.settings.keys().copied()).collect();
     names.sort_unstable();
@@ -37,17 +27,17 @@ fn panels(answer: &Answer) -> Vec<Panel> {
             let u = all.iter().filter(|point| point.0 == *value).map(|point| point.1).fold(f64::INFINITY, f64::min);
             u.is_finite().then_some((*value, u))
         });
-        let best = best.collect();
-        let chosen = answer.best.chosen.iter().filter_map(|(place, _)| at(&answer.tests[*place])).collect();
+        let chosen = answer.best.chosen.iter().filter_map(|(place, _)| at(&answer.tests[*place]));
         let axis = match unit(name).trim() {
             "" => name.replace('_', " "),
             unit => label(name.replace('_', " "), unit),
         };
         let panel = Panel::new(axis, label(format!("u of {}", answer.aim), "%"), 320.0)
-            .with(Layer::new(Role::Points, "each test by itself", all))
-            .with(Layer::new(Role::Fitted, "the best at each value", best))
-            .with(Layer::new(Role::ResidualPoints, "in the best set", chosen));
+            .with(Role::Points, "each test by itself", all.iter().copied())
+            .with(Role::Fitted, "the best at each value", best)
+            .with(Role::ResidualPoints, "in the best set", chosen);
         Some(panel)
     };
-    names.into_iter().filter_map(panel).collect()
+    let panels: Vec<Panel> = names.into_iter().filter_map(panel).collect();
+    (!panels.is_empty()).then(|| ("design.svg", drawn(&panels)))
 }

@@ -17,7 +17,7 @@ use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
 use serde::Serialize;
 
 use crate::files;
-use crate::output::{Output, drawn, print, print_json};
+use crate::output::{Output, print, print_json};
 use file::{Robust, Wanted};
 
 /// Says which tests to make.
@@ -73,10 +73,7 @@ struct Answer {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let answer = answer(Wanted::read(&arguments.file)?).map_err(files::named(&arguments.file))?;
-    if let Some(folder) = arguments.output.folder()? {
-        figures::draw(folder, &answer)?;
-        drawn(folder, "design.svg");
-    }
+    arguments.output.draw("design.svg", || Ok(figures::picture(&answer).into_iter().collect()))?;
     if arguments.output.json { print_json(&answer) } else { print(text(&answer).trim_end()) }
 }
 
@@ -206,11 +203,7 @@ mod tests {
         let json = serde_json::to_value(&answer).unwrap();
         assert_eq!(json["tests"].as_array().unwrap().len(), 9);
         assert!(json["best"]["findings"]["mu"]["u"].as_f64().unwrap() > 0.0);
-        let folder = std::env::temp_dir().join(format!("fmm-design-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        figures::draw(&folder, &answer).unwrap();
-        let drawn = std::fs::read_to_string(folder.join("design.svg")).unwrap();
-        std::fs::remove_dir_all(&folder).unwrap();
+        let (_, drawn) = figures::picture(&answer).unwrap();
         assert!(drawn.contains("release") && drawn.contains("normal load"));
     }
 

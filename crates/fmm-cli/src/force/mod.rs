@@ -10,10 +10,10 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::figure::{self, Layer, Panel, Role, label};
+use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
 use crate::input::Held;
-use crate::output::{Output, drawn, print, print_json};
+use crate::output::{Output, print, print_json};
 use clap::Args;
 use fmm_identify::{
     Candidate, Estimated, ForceLoop, ForceRecord, Identification, Machine, Onset, SpeedBin, Validation, compare,
@@ -78,12 +78,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let compared = compare(&Machine::per_unit_mass(), &records, &described)?;
     let found = compared.identifications();
-    if let Some(folder) = arguments.output.folder()? {
-        for (index, found) in found.iter().enumerate() {
-            figure::stacked(&folder.join(format!("force_{}.svg", index + 1)), &panels(&records[0], found)?)?;
-        }
-        drawn(folder, "force_*.svg");
-    }
+    let picture = |(found, number): (&Identification, usize)| {
+        Ok((format!("force_{number}.svg"), drawn(&panels(&records[0], found)?)))
+    };
+    arguments.output.draw("force_*.svg", || found.iter().zip(1..).map(picture).collect())?;
     if arguments.output.json {
         let models = found.iter().map(|found| document(found, validated, &others)).collect::<Result<Vec<_>, _>>()?;
         let document = json!({
@@ -238,14 +236,14 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
     let said = found.predict(record)?;
     let velocity = format!("{}/s", record.position_unit());
     let against = |abscissae: &[f64], name: &str, unit: &str| {
-        let measured = abscissae.iter().copied().zip(record.forces().iter().copied()).collect();
-        let fitted = abscissae.iter().zip(&said).filter_map(|(x, said)| Some((*x, (*said)?))).collect();
+        let measured = abscissae.iter().copied().zip(record.forces().iter().copied());
+        let fitted = abscissae.iter().zip(&said).filter_map(|(x, said)| Some((*x, (*said)?)));
         Panel::new(label(name, unit), label("force", record.force_unit()), 420.0)
-            .with(Layer::new(Role::Measured, "measured", measured))
-            .with(Layer::new(Role::Fitted, found.law(), fitted))
+            .with(Role::Measured, "measured", measured)
+            .with(Role::Fitted, found.law(), fitted)
     };
     let bins = record.friction_over_speed_and_load(BINS, LOADS);
-    let (speed, friction, bins) = if bins.iter().any(|bin| bin.coefficient().is_some()) {
+    let (speed, friction, bins): (_, _, Vec<_>) = if bins.iter().any(|bin| bin.coefficient().is_some()) {
         let point = |bin: &SpeedBin| Some((bin.speed_by_load()?, bin.coefficient()?.value));
         (format!("{velocity}/N"), label("friction by load", "1"), bins.iter().filter_map(point).collect())
     } else {
@@ -262,29 +260,29 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
     Ok(vec![
         against(record.positions(), "position", record.position_unit()),
         against(record.velocities(), "velocity", &velocity),
-        Panel::new(label(of_speed, &speed), friction, 260.0).with(Layer::new(
+        Panel::new(label(of_speed, &speed), friction, 260.0).with(
             Role::Points,
             "half the difference of the directions, medians",
             bins,
-        )),
-        Panel::new("time / s", label("residual", record.force_unit()), 260.0).with(Layer::new(
+        ),
+        Panel::new("time / s", label("residual", record.force_unit()), 260.0).with(
             Role::Residual,
             text,
             left(record.times()),
-        )),
-        Panel::new("phase of the motion / °", label("residual", record.force_unit()), 260.0).with(Layer::new(
+        ),
+        Panel::new("phase of the motion / °", label("residual", record.force_unit()), 260.0).with(
             Role::ResidualPoints,
             "0° at the greatest velocity, 90° at the greatest position",
             left(&phases(record)),
-        )),
+        ),
     ])
 }
 
 /// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of
 /// its half range.
 fn phases(record: &ForceRecord) -> Vec<f64> {
-    let ends = |values: &[f64]| figure::ends(values.iter().copied());
-    let ((low, high), (slow, fast)) = (ends(record.positions()), ends(record.velocities()));
+    let (low, high) = ends(record.positions().iter().copied());
+    let (slow, fast) = ends(record.velocities().iter().copied());
     let share = |value: f64, centre: f64, half: f64| if half > 0.0 { (value - centre) / half } else { 0.0 };
     let reach = fast.max(-slow);
     let phase = |(x, v): (&f64, &f64)| {

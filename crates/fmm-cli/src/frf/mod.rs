@@ -14,14 +14,13 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use crate::files::named;
-use crate::input::Measured;
-use crate::output::{Output, drawn, print};
+use crate::output::{Output, print};
 use analysis::{Analysis, Window};
 use clap::Args;
 use fmm_frf::{FrequencyResponse, ResponseForm};
 use fmm_record::Quantity;
 use serde_json::json;
-use trials::{Choice, Trial};
+use trials::{Channels, Trial};
 
 /// Estimates the frequency response of a machine from impact tests.
 #[derive(Debug, Args)]
@@ -29,25 +28,8 @@ pub(crate) struct Arguments {
     /// The trials: .csv, .tsv, .txt, .mat, .uff, .unv, .58, .npy or .npz, all of one rate and length
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// The channel with the force, by name or by number counted from 0 without time; as in data(:,2) for a matrix of
-    /// MATLAB, data[1] or data[:,1] for one of NumPy
-    #[arg(long, value_name = "NAME|INDEX")]
-    force: Option<String>,
-    /// The channel with the response
-    #[arg(long, value_name = "NAME|INDEX")]
-    response: Option<String>,
-    /// Quantity of the response, if neither the file nor the name of the channel says it
-    #[arg(long, value_enum)]
-    quantity: Option<Measured>,
-    /// Factor that turns the force into N; needed if the file states another unit
-    #[arg(long, value_name = "FACTOR")]
-    force_scale: Option<f64>,
-    /// Factor that turns the response into SI units; needed if the file states others
-    #[arg(long, value_name = "FACTOR")]
-    response_scale: Option<f64>,
-    /// The sampling rate, if there is no time channel
-    #[arg(long, value_name = "HZ")]
-    rate: Option<f64>,
+    #[command(flatten)]
+    channels: Channels,
     /// Weights on the samples
     #[arg(long, value_enum, default_value = "none")]
     window: Window,
@@ -155,23 +137,11 @@ fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let choice = Choice {
-        force: arguments.force.as_deref(),
-        response: arguments.response.as_deref(),
-        quantity: arguments.quantity.map(Quantity::from),
-        force_scale: arguments.force_scale,
-        response_scale: arguments.response_scale,
-        rate: arguments.rate,
-    };
-    let read = |path: &PathBuf| choice.read(path).map_err(named(path));
+    let read = |path: &PathBuf| arguments.channels.read(path).map_err(named(path));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
     let analysis = Analysis::of(&trials, form(&trials)?, arguments.window, arguments.exponential_end)?;
     let text =
         if arguments.output.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
     print(text.trim_end())?;
-    if let Some(folder) = arguments.output.folder()? {
-        figures::draw(folder, &trials, &analysis)?;
-        drawn(folder, "{trials,response,magnitude}.svg");
-    }
-    Ok(())
+    arguments.output.draw("{trials,response,magnitude}.svg", || Ok(figures::pictures(&trials, &analysis)))
 }

@@ -10,9 +10,9 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::analysis::{Analysis, Window};
-use super::trials::{Choice, Trial};
+use super::trials::{Channels, Trial};
 
-const ACCELERATION: Choice<'_> = Choice {
+const ACCELERATION: Channels = Channels {
     force: None,
     response: None,
     quantity: Some(Quantity::Acceleration),
@@ -21,7 +21,7 @@ const ACCELERATION: Choice<'_> = Choice {
     rate: None,
 };
 
-const VELOCITY: Choice<'_> = Choice { quantity: Some(Quantity::Velocity), ..ACCELERATION };
+const VELOCITY: Channels = Channels { quantity: Some(Quantity::Velocity), ..ACCELERATION };
 
 /// A new folder for the files of a test.
 fn folder(name: &str) -> PathBuf {
@@ -39,11 +39,11 @@ fn hammers() -> Vec<PathBuf> {
     (1..=3).map(|hit| workspace(&format!("examples/data/hammer_{hit}.mat"))).collect()
 }
 
-fn read(choice: &Choice<'_>, path: &Path) -> Trial {
+fn read(choice: &Channels, path: &Path) -> Trial {
     choice.read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-fn refusal(choice: &Choice<'_>, path: &Path) -> String {
+fn refusal(choice: &Channels, path: &Path) -> String {
     choice.read(path).err().map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
 }
 
@@ -145,7 +145,10 @@ fn a_measurement_in_universal_files() {
     // Doubles in bytes are exact, and text has 13 digits.
     for (file, relative) in [("impact_time_binary.uff", 0.0), ("impact_time_ascii.uff", 5e-13)] {
         let path = workspace("crates/fmm-record/tests/data").join(file);
-        for choice in [VELOCITY, Choice { force: Some("0"), response: Some("velocity trial 2"), ..VELOCITY }] {
+        for choice in [
+            VELOCITY,
+            Channels { force: Some("0".to_owned()), response: Some("velocity trial 2".to_owned()), ..VELOCITY },
+        ] {
             let trial = read(&choice, &path);
             assert_eq!((trial.force.rate(), trial.response.rate(), trial.warnings), (512.0, 512.0, vec![]), "{file}");
             assert!(trial.origin.starts_with("force trial 2 and velocity trial 2;"), "{}", trial.origin);
@@ -169,12 +172,12 @@ fn channels_that_are_not_there_or_not_what_they_should_be() {
     let (times, responses) = (data.join("impact_time_binary.uff"), data.join("impact_frf_binary.uff"));
     for (choice, path, expected) in [
         (
-            Choice { response: Some("2"), ..VELOCITY },
+            Channels { response: Some("2".to_owned()), ..VELOCITY },
             &times,
             "there is no channel 2; there are, counted from 0: force trial 2, velocity trial 2",
         ),
         (
-            Choice { response: Some("microphone"), ..VELOCITY },
+            Channels { response: Some("microphone".to_owned()), ..VELOCITY },
             &times,
             "there is no data set \"microphone\"; the file has: \"force trial 2\", \"velocity trial 2\"",
         ),
@@ -185,27 +188,27 @@ fn channels_that_are_not_there_or_not_what_they_should_be() {
              trial 2, velocity trial 2",
         ),
         (
-            Choice { response: Some("1"), ..ACCELERATION },
+            Channels { response: Some("1".to_owned()), ..ACCELERATION },
             &times,
             "the file says that velocity trial 2 is a velocity, and no acceleration",
         ),
         (
-            Choice { response: Some("force trial 2"), ..VELOCITY },
+            Channels { response: Some("force trial 2".to_owned()), ..VELOCITY },
             &times,
             "channel force trial 2 cannot be both force and response",
         ),
         (
-            Choice { rate: Some(512.0), ..VELOCITY },
+            Channels { rate: Some(512.0), ..VELOCITY },
             &times,
             "a Universal File states its own sampling; leave out the rate and the time",
         ),
         (
-            Choice { force: Some("0"), response: Some("mobility H1"), ..VELOCITY },
+            Channels { force: Some("0".to_owned()), response: Some("mobility H1".to_owned()), ..VELOCITY },
             &responses,
             "channel mobility H1 cannot be both force and response",
         ),
         (
-            Choice { force: Some("mobility H1"), response: Some("none"), ..VELOCITY },
+            Channels { force: Some("mobility H1".to_owned()), response: Some("none".to_owned()), ..VELOCITY },
             &responses,
             "\"mobility H1\" is no record over time, but a frequency response",
         ),
@@ -217,14 +220,14 @@ fn channels_that_are_not_there_or_not_what_they_should_be() {
 /// Nobody is told that an acceleration is a mobility: what the response measured is said by somebody, or refused.
 #[test]
 fn a_response_is_what_its_channel_says_or_refused() {
-    const SILENT: Choice<'_> = Choice { quantity: None, ..ACCELERATION };
+    const SILENT: Channels = Channels { quantity: None, ..ACCELERATION };
     for path in hammers() {
         assert_eq!(read(&SILENT, &path).response.quantity(), Quantity::Acceleration);
     }
     let folder = folder("silent");
     let path = folder.join("x.npy");
     std::fs::write(&path, npy("(3, 4)", &[0.0, 0.5, 1.0, 1.5, 0.0, 1.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0])).unwrap();
-    for choice in [SILENT, Choice { force: Some("0"), response: Some("1"), ..SILENT }] {
+    for choice in [SILENT, Channels { force: Some("0".to_owned()), response: Some("1".to_owned()), ..SILENT }] {
         let refused = refusal(&choice, &path);
         assert!(refused.starts_with("no channel says what the response measured; give --quantity"), "{refused}");
     }
@@ -256,7 +259,7 @@ fn units_are_not_taken_for_others() {
         refused.ends_with(" is in \"mm/s\"; give the factor that turns it into m/s as --response-scale"),
         "{refused}"
     );
-    let trial = read(&Choice { response_scale: Some(1e-3), ..VELOCITY }, &path);
+    let trial = read(&Channels { response_scale: Some(1e-3), ..VELOCITY }, &path);
     assert_eq!((trial.response.values()[2], trial.response.unit()), (2e-3, "m/s"));
     assert_eq!((trial.force.values()[2], trial.force.unit()), (2.0, "N"));
 }

@@ -3,7 +3,10 @@
 use std::error::Error;
 use std::path::Path;
 
+use clap::Args;
 use fmm_record::{Channel, Column, Label, Quantity, Reader, Reading, Record};
+
+use crate::input::motion;
 
 /// One blow.
 pub(crate) struct Trial {
@@ -17,18 +20,30 @@ pub(crate) struct Trial {
 }
 
 /// Channels to read, and their units.
-pub(crate) struct Choice<'a> {
-    pub(crate) force: Option<&'a str>,
-    pub(crate) response: Option<&'a str>,
-    /// Quantity of the response; without it, that of the file or of the channel's name.
+#[derive(Debug, Args)]
+pub(crate) struct Channels {
+    /// The channel with the force, by name or by number counted from 0 without time; as in data(:,2) for a matrix of
+    /// MATLAB, data[1] or data[:,1] for one of NumPy
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub(crate) force: Option<String>,
+    /// The channel with the response
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub(crate) response: Option<String>,
+    /// Quantity of the response, if neither the file nor the name of the channel says it
+    #[arg(long, value_parser = motion())]
     pub(crate) quantity: Option<Quantity>,
-    /// From what the file holds to SI units; without a factor it must be in these.
+    /// Factor that turns the force into N; needed if the file states another unit
+    #[arg(long, value_name = "FACTOR")]
     pub(crate) force_scale: Option<f64>,
+    /// Factor that turns the response into SI units; needed if the file states others
+    #[arg(long, value_name = "FACTOR")]
     pub(crate) response_scale: Option<f64>,
+    /// The sampling rate, if there is no time channel
+    #[arg(long, value_name = "HZ")]
     pub(crate) rate: Option<f64>,
 }
 
-impl Choice<'_> {
+impl Channels {
     /// Reads the two channels of a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Trial, Box<dyn Error>> {
         let mut reader = Reader::default();
@@ -84,7 +99,7 @@ impl Choice<'_> {
                 )
             })
         };
-        let force = self.force.map_or_else(|| found(Quantity::Force, None), given)?;
+        let force = self.force.as_deref().map_or_else(|| found(Quantity::Force, None), given)?;
         let is_motion = |offer: &&Channel| {
             key(offer) != force && is_series(offer) && told(offer).is_some_and(|told| told != Quantity::Force)
         };
@@ -92,17 +107,18 @@ impl Choice<'_> {
         let silent = || {
             format!("no channel says what the response measured; give --quantity; there are, counted from 0: {}", all())
         };
-        let response = match (self.response, self.quantity) {
+        let response = match (self.response.as_deref(), self.quantity) {
             (Some(choice), _) => given(choice)?,
             (None, Some(quantity)) => found(quantity, Some(&force))?,
             (None, None) => moves().ok_or_else(silent)?,
         };
         if force == response {
             let name = offers.iter().find(|offer| key(offer) == force).map(|offer| offer.label.name().to_owned());
-            let name = name.or(self.force.map(str::to_owned)).unwrap_or_default();
+            let name = name.or(self.force.clone()).unwrap_or_default();
             return Err(format!("channel {name} cannot be both force and response").into());
         }
-        let written = || self.response.and_then(|name| Label::of(name).quantity()).filter(|told| is_of_motion(*told));
+        let written =
+            || self.response.as_deref().and_then(|name| Label::of(name).quantity()).filter(|told| is_of_motion(*told));
         let offered = || offers.iter().find(|offer| key(offer) == response).and_then(told);
         let quantity = self.quantity.or_else(|| offered().or_else(written)).ok_or_else(silent)?;
         Ok((force, response, quantity))

@@ -3,7 +3,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use fmm_record::{Column, DataFile, Label, Quantity, Reader, Reading, Record, RecordError, Request};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use fmm_record::{Column, DataFile, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit};
 
 /// The record to identify, and how it was read.
 pub(crate) struct Input {
@@ -24,20 +26,49 @@ impl Input {
     }
 }
 
-/// Choices of the user; the rest is found in the file.
-#[derive(Default)]
+/// Channel, quantity and unit, as far as the user says them; the rest is found in the file.
+#[derive(Debug, Default, Args)]
 pub(crate) struct Choice {
+    /// The channel with the motion, by name, with or without its unit, or by number counted from 0. Without it: the
+    /// only channel, or the one that fits --quantity and --unit, or the one whose unit is that of a velocity or else of
+    /// a displacement
+    #[arg(long, value_name = "NAME|INDEX")]
     pub(crate) channel: Option<Column>,
+    /// The channel with the time (s)
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "rate")]
     pub(crate) time: Option<Column>,
-    /// Sampling rate (Hz).
+    /// The sampling rate, if there is no time channel
+    #[arg(long, value_name = "HZ")]
     pub(crate) rate: Option<f64>,
-    /// The times (s) before and after which nothing is used.
+    /// Quantity of the channel; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
+    #[arg(long, value_parser = motion())]
+    pub(crate) quantity: Option<Quantity>,
+    /// Factor that turns the numbers of the channel into --unit; both count instead of a unit in the file. A unit in
+    /// the name, as in "v [mm/s]", needs no factor
+    #[arg(long, value_name = "FACTOR")]
+    pub(crate) scale: Option<f64>,
+    /// Unit of the channel, such as mm/s, rad or V, after scaling by --scale; needed if the file tells none. With
+    /// --quantity but no unit anywhere, SI units are taken
+    #[arg(long)]
+    pub(crate) unit: Option<WrittenUnit>,
+    /// Use the record from this time on
+    #[arg(long, value_name = "S")]
     pub(crate) from: Option<f64>,
+    /// Use the record up to this time
+    #[arg(long, value_name = "S")]
     pub(crate) to: Option<f64>,
-    /// Quantity, unit and scale of the channel.
-    pub(crate) request: Request,
     /// True for the channel that drives the machine.
+    #[arg(skip)]
     pub(crate) is_drive: bool,
+}
+
+/// Quantity of a motion by its name.
+pub(crate) fn motion() -> impl TypedValueParser<Value = Quantity> {
+    PossibleValuesParser::new(["velocity", "displacement", "acceleration"]).map(|name| match name.as_str() {
+        "velocity" => Quantity::Velocity,
+        "displacement" => Quantity::Displacement,
+        _ => Quantity::Acceleration,
+    })
 }
 
 /// A bicycle fork that swings as a pendulum, for those who have no record at hand.
@@ -45,6 +76,21 @@ pub(super) const BUNDLED: (&str, &[u8]) =
     ("BrowserForkCompoundFirst1.mat", include_bytes!("../../data/BrowserForkCompoundFirst1.mat"));
 
 impl Choice {
+    /// Quantity, unit and scale of the channel.
+    fn request(&self) -> Request {
+        let mut request = Request::default();
+        if let Some(quantity) = self.quantity {
+            request = request.quantity(quantity);
+        }
+        if let Some(unit) = &self.unit {
+            request = request.unit(unit.clone());
+        }
+        if let Some(scale) = self.scale {
+            request = request.scale(scale);
+        }
+        request
+    }
+
     /// Reads the record of a bicycle fork that comes with the program.
     pub(crate) fn read_bundled(&self) -> Result<Input, Box<dyn Error>> {
         let (name, bytes) = BUNDLED;
@@ -97,7 +143,7 @@ impl Choice {
         let file = open(&reader)?;
         let reading = match &self.channel {
             Some(channel) => file.channel(channel.clone()),
-            None => file.choose(&self.request),
+            None => file.choose(&self.request()),
         };
         let reading = reading.map_err(|error| match error {
             RecordError::TimeAxis { .. } => format!("{error}; here the rate is --rate and the time is --time").into(),
@@ -114,7 +160,7 @@ impl Choice {
         reading: &Reading,
         warnings: Vec<String>,
     ) -> Result<Input, Box<dyn Error>> {
-        let meaning = self.request.meaning(label).map_err(|error| self.with_remedy(error))?;
+        let meaning = self.request().meaning(label).map_err(|error| self.with_remedy(error))?;
         let is_motion =
             matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement | Quantity::Acceleration);
         if !is_motion && !self.is_drive {

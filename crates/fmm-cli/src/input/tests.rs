@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fmm_record::uff::{ByteOrder, DataSet, Form, write};
-use fmm_record::{Column, Quantity, Record, Request};
+use fmm_record::{Column, Quantity, Record};
 
 use super::{Choice, Input};
 
@@ -31,16 +31,12 @@ fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data").join(name)
 }
 
-fn asked(request: Request) -> Choice {
-    Choice { request, ..Choice::default() }
+fn quantity(quantity: Quantity) -> Choice {
+    Choice { quantity: Some(quantity), ..Choice::default() }
 }
 
-fn quantity(quantity: Quantity) -> Request {
-    Request::default().quantity(quantity)
-}
-
-fn unit(text: &str) -> Request {
-    Request::default().unit(text.parse().unwrap())
+fn unit(text: &str) -> Choice {
+    Choice { unit: Some(text.parse().unwrap()), ..Choice::default() }
 }
 
 fn read(choice: &Choice, path: &Path) -> Input {
@@ -64,7 +60,7 @@ fn an_acceleration_is_no_velocity() {
         let path = text(name, header);
         let input = read(&Choice::default(), &path);
         assert_eq!((input.record.quantity(), input.record.unit()), (Quantity::Acceleration, "m/s²"));
-        let refused = refusal(&asked(quantity(Quantity::Velocity)), &path);
+        let refused = refusal(&quantity(Quantity::Velocity), &path);
         assert!(
             refused.contains("a unit of acceleration, not of velocity; leave out --quantity velocity"),
             "{refused}"
@@ -81,7 +77,7 @@ fn the_channel_is_the_one_that_its_unit_tells_out() {
     assert_eq!(found(&input), (Quantity::Velocity, "m/s", 2.0 * 1e-3));
     let origin = "three.csv, channel vel [mm/s]: velocity in m/s after a factor of 0.001; the sampling rate was";
     assert!(input.origin.starts_with(origin), "{}", input.origin);
-    let displacement = read(&asked(quantity(Quantity::Displacement)), &three);
+    let displacement = read(&quantity(Quantity::Displacement), &three);
     assert_eq!(found(&displacement), (Quantity::Displacement, "m", 1e-3));
     let by_name = Choice { channel: Some(Column::from("disp [mm]")), ..Choice::default() };
     assert_eq!(found(&read(&by_name, &three)), (Quantity::Displacement, "m", 1e-3));
@@ -109,18 +105,18 @@ fn what_no_unit_tells_is_asked_for() {
         assert!(refused.contains(&format!("\"{header}\"")) && refused.contains(remedy), "{header}: {refused}");
     }
     let millimetres = text("millimetres.csv", "v [mm/s]");
-    for (request, remedy) in [
+    for (choice, remedy) in [
         (unit("m/s"), "leave out --unit m/s, or give --scale as well"),
-        (Request::default().scale(2.0), "give --unit as well"),
-        (unit("m").quantity(Quantity::Velocity), "give --quantity displacement"),
+        (Choice { scale: Some(2.0), ..Choice::default() }, "give --unit as well"),
+        (Choice { quantity: Some(Quantity::Velocity), ..unit("m") }, "give --quantity displacement"),
     ] {
-        let refused = refusal(&asked(request), &millimetres);
+        let refused = refusal(&choice, &millimetres);
         assert!(refused.contains(remedy), "{refused}");
     }
-    let scaled = asked(unit("rad").scale(0.5).quantity(Quantity::Displacement));
+    let scaled = Choice { scale: Some(0.5), quantity: Some(Quantity::Displacement), ..unit("rad") };
     let counts = read(&scaled, &text("counts.csv", "encoder_counts"));
     assert_eq!(found(&counts), (Quantity::Displacement, "rad", 0.5));
-    let input = read(&asked(quantity(Quantity::Displacement)), &text("x.csv", "x"));
+    let input = read(&quantity(Quantity::Displacement), &text("x.csv", "x"));
     assert_eq!(found(&input), (Quantity::Displacement, "m", 1.0));
     assert!(input.origin.contains("displacement, taken to be in m;"), "{}", input.origin);
 }
@@ -134,7 +130,7 @@ fn measured_records_are_what_they_were() {
     assert!(input.origin.contains("channel data: velocity in V;"), "{}", input.origin);
     let theta = Choice { channel: Some(Column::from("theta_rad")), ..Choice::default() };
     assert_eq!(found(&read(&theta, &data("single_pendulum_55s_1khz.csv"))).0, Quantity::Displacement);
-    let wheel_in = |spelled: &str| read(&asked(unit(spelled)), &data("bicycle_wheel_radial_gyro.csv")).record;
+    let wheel_in = |spelled: &str| read(&unit(spelled), &data("bicycle_wheel_radial_gyro.csv")).record;
     let degree = wheel_in("deg/s").values()[0] / wheel_in("rad/s").values()[0];
     assert!((degree.to_degrees() - 1.0).abs() < 1e-12, "one degree is {degree} rad");
 }
@@ -151,7 +147,7 @@ fn universal_files_state_quantity_and_unit() {
     assert_eq!(found(&millimetres), (Quantity::Velocity, "m/s", 3.0 * 1e-3));
     let volts = universal("volts.uff", Quantity::Displacement, "V");
     assert_eq!(found(&read(&Choice::default(), &volts)), (Quantity::Displacement, "V", 3.0));
-    let refused = refusal(&asked(quantity(Quantity::Velocity)), &volts);
+    let refused = refusal(&quantity(Quantity::Velocity), &volts);
     assert!(refused.contains("is a record of displacement, but it was said to be one of velocity"), "{refused}");
     let refused = refusal(&Choice::default(), &universal("pascal.uff", Quantity::Other, "Pa"));
     assert!(refused.starts_with("the unit \"Pa\" of channel") && refused.contains("--unit"), "{refused}");

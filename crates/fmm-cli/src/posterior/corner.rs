@@ -2,7 +2,7 @@
 
 use fmm_fit::Marginal;
 
-use crate::figure::{Cells, Layer, Panel, Role, drawn_corner, label};
+use crate::figure::{Cells, Panel, Role, drawn_corner, label};
 use crate::page::words;
 
 /// More panels side by side cannot be read.
@@ -26,7 +26,7 @@ pub(crate) fn corner(marginals: &[&Marginal]) -> String {
     let panel = |row: usize, column: usize| {
         let x_label = if row == last { of(shown[column]) } else { String::new() };
         if row == column {
-            return Panel::new(x_label, "", HEIGHT).with(Layer::new(Role::FittedAgain, "", density(shown[row])));
+            return Panel::new(x_label, "", HEIGHT).with(Role::Fitted, "", density(shown[row]));
         }
         let y_label = if column == 0 { of(shown[row]) } else { String::new() };
         Panel::new(x_label, y_label, HEIGHT).over(pair(shown[column], shown[row]))

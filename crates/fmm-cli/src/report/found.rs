@@ -5,7 +5,7 @@ use std::error::Error;
 use fmm_identify::{Comparison, Experiment, Finding};
 use fmm_record::{Record, Swings};
 
-use crate::figure::{Layer, Panel, Role, label};
+use crate::figure::{Panel, Role, label};
 use crate::posterior::Posterior;
 
 /// A record, as it was prepared and fitted.
@@ -38,20 +38,20 @@ impl Pictures {
         let residuals: Vec<f64> =
             record.values().iter().zip(&model).map(|(measured, model)| measured - model).collect();
         let motion = Panel::new("", label(quantity, unit), 330.0)
-            .with(Layer::new(Role::Measured, "measured", curve(record.values())))
-            .with(Layer::new(Role::Fitted, format!("fit by {}", preferred.law()), curve(&model)));
-        let remainder = Panel::new("time / s", label("residual", unit), 210.0).with(Layer::new(
+            .with(Role::Measured, "measured", curve(record.values()))
+            .with(Role::Fitted, format!("fit by {}", preferred.law()), curve(&model));
+        let remainder = Panel::new("time / s", label("residual", unit), 210.0).with(
             Role::Residual,
             "measured − fit",
             curve(&residuals),
-        ));
+        );
         let offset = preferred.finding("offset").map_or(0.0, Finding::value);
-        let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs())).collect();
+        let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs()));
         let swings = Swings::of(&Record::new(record.start(), record.interval(), model, quantity, unit)?);
-        let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs())).collect();
+        let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs()));
         let amplitude = Panel::new("time / s", label("amplitude of each half swing", unit), 380.0)
-            .with(Layer::new(Role::Points, "measured", measured))
-            .with(Layer::new(Role::Fitted, format!("envelope of {}", preferred.law()), fitted));
+            .with(Role::Points, "measured", measured)
+            .with(Role::Fitted, format!("envelope of {}", preferred.law()), fitted);
         Ok(Self { fit: vec![motion, remainder], amplitude: vec![amplitude], residuals })
     }
 }

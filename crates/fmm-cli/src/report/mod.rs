@@ -16,7 +16,7 @@ use self::budget::{budget, of_size};
 pub(crate) use self::found::{Found, Pictures};
 use self::profiles::profiles;
 use crate::backbone;
-use crate::figure::{Layer, Panel, Role, drawn, drawn_histogram, label};
+use crate::figure::{Panel, Role, drawn, histogram, label};
 use crate::page::{bullets, cell, escaped, figure, optional_cell, page, row_heading, section, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
@@ -127,18 +127,18 @@ fn laws(found: &Found) -> String {
 
 fn residuals(found: &Found, pictures: &Pictures) -> String {
     let unit = found.decay.record().unit();
-    let histogram = drawn_histogram(&label("residual", unit), "residuals", &pictures.residuals);
+    let histogram = histogram(&label("residual", unit), "residuals", &pictures.residuals);
     let summary = found.decay.summary();
     let count = pictures.residuals.len();
     let last = ((PERIODS * summary.rate / summary.frequency) as usize).clamp(1, count.saturating_sub(1).max(1));
     let correlation = |lag: usize| Some((lag as f64 / summary.rate, autocorrelation(&pictures.residuals, lag)?));
-    let points = (1..=last).step_by(last.div_ceil(LAGS)).filter_map(correlation).collect();
+    let points = (1..=last).step_by(last.div_ceil(LAGS)).filter_map(correlation);
     let of_noise = 1.96 / (count as f64).sqrt();
-    let ends = |value: f64| vec![(0.0, value), (last as f64 / summary.rate, value)];
+    let ends = |value: f64| [(0.0, value), (last as f64 / summary.rate, value)];
     let panel = Panel::new("lag / s", "autocorrelation", 260.0)
-        .with(Layer::new(Role::Residual, "residuals", points))
-        .with(Layer::new(Role::Reference, "95 % of white noise", ends(of_noise)))
-        .with(Layer::new(Role::ReferenceAgain, "", ends(-of_noise)));
+        .with(Role::Residual, "residuals", points)
+        .with(Role::Reference, "95 % of white noise", ends(of_noise))
+        .with(Role::Reference, "", ends(-of_noise));
     figure(
         &histogram,
         "The distribution of the residuals, with the normal density of the same mean and deviation.",

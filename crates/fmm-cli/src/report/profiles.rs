@@ -7,7 +7,7 @@ use fmm_identify::{Profile, Profiles};
 use fmm_model::Rounded;
 
 use super::{Found, LEVEL};
-use crate::figure::{Layer, Panel, Role, drawn, label};
+use crate::figure::{Panel, Role, drawn, label};
 use crate::page::{bullets, figure, row_heading, table, text_cell, words};
 
 /// Points of a parabola.
@@ -111,16 +111,15 @@ fn picture(number: usize, profile: &Profile) -> String {
     let (low, high) = profile.straight();
     let first = curve.first().map_or(low, |point| point.0.min(low));
     let last = curve.last().map_or(high, |point| point.0.max(high));
-    let parabola: Vec<(f64, f64)> = (0..=POINTS)
+    let parabola = (0..=POINTS)
         .map(|step| first + (last - first) * step as f64 / POINTS as f64)
         .map(|value| (value, profile.parabola(value)))
-        .filter(|(_, rise)| *rise <= TOP * threshold)
-        .collect();
+        .filter(|(_, rise)| *rise <= TOP * threshold);
     let axis = label(words(profile.parameter().name()), profile.parameter().unit());
     let panel = Panel::new(axis, "rise of the sum of squares over the variance", 300.0)
-        .with(Layer::new(Role::Fitted, "profile", curve.to_vec()))
-        .with(Layer::new(Role::Measured, "value ± k u", parabola))
-        .with(Layer::new(Role::Reference, "95 %", vec![(first, threshold), (last, threshold)]));
+        .with(Role::Fitted, "profile", curve.iter().copied())
+        .with(Role::Measured, "value ± k u", parabola)
+        .with(Role::Reference, "95 %", [(first, threshold), (last, threshold)]);
     let caption = format!(
         "{}: the sum of squares with all others fitted again, beside the parabola of value ± k u; below the line lies the 95 % interval.",
         words(profile.parameter().name())

@@ -102,7 +102,7 @@ fn of_family<F: LawFamily>(law: F::At<f64>) -> Contact {
 }
 
 fn made(given: &Given, make: impl FnOnce(&[f64]) -> Result<Contact, LawError>) -> Made {
-    Ok(make(&given.numbers()?).map_err(|error| format!("the law {}: {error}", given.law()))?)
+    Ok(make(&given.numbers()?).map_err(|error| format!("the law {}: {error}", given.law))?)
 }
 
 /// Names of all laws.

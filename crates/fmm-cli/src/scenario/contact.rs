@@ -30,7 +30,8 @@ impl Setting {
 /// The motion by the chosen engine; none if it does not take the law.
 type Simulate = dyn Fn(&Setting, Choice, &Sampling) -> Result<Option<Trajectory>, SimulationError>;
 
-/// Friction coefficient (1) by velocity (m/s), internal states, and whether the speed falls.
+/// Friction coefficient (1) with its sign by velocity (m/s) relative to the counterface, internal states, and whether
+/// the speed falls.
 type Coefficient = dyn Fn(f64, &[f64], bool) -> f64;
 
 /// A law of any type.
@@ -38,17 +39,9 @@ pub(crate) struct Contact {
     /// The engines that take the law.
     pub(crate) engines: &'static [EngineName],
     pub(crate) simulate: Box<Simulate>,
-    coefficient: Box<Coefficient>,
+    pub(crate) coefficient: Box<Coefficient>,
     /// The law as one of the sliding speed alone, if it is one.
     pub(crate) sliding: Option<AnySliding>,
-}
-
-impl Contact {
-    /// Friction coefficient (1), with its sign, at a `velocity` (m/s) relative to the counterface and internal
-    /// `states`; `losing` tells that the speed falls.
-    pub(crate) fn coefficient(&self, velocity: f64, states: &[f64], losing: bool) -> f64 {
-        (self.coefficient)(velocity, states, losing)
-    }
 }
 
 /// Makes a contact of a law, with the motion by the engine that suits it best.

@@ -5,7 +5,7 @@ use super::keys::{Shape, Slot};
 
 /// The values given for a law, each under its parameter.
 pub(crate) struct Given {
-    law: &'static str,
+    pub(crate) law: &'static str,
     slots: Vec<Slot>,
     fields: Vec<Option<Field>>,
 }
@@ -33,11 +33,6 @@ impl Given {
             return Err(format!("the law {law} needs {missing}; its parameters are {}", known()));
         }
         Ok(Self { law, slots, fields })
-    }
-
-    /// Name of the law.
-    pub(crate) const fn law(&self) -> &'static str {
-        self.law
     }
 
     /// The numbers, in the order of the slots, lists and laws left out.

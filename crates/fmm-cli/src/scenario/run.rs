@@ -14,12 +14,14 @@ use super::{EngineName, Motion, Plan};
 
 /// A scenario, checked and ready to run.
 pub(crate) struct Simulation {
-    title: String,
-    description: String,
-    law: &'static str,
+    pub(crate) title: String,
+    pub(crate) description: String,
+    /// Name of the law.
+    pub(crate) law: &'static str,
     contact: Contact,
     setting: Setting,
-    belt: f64,
+    /// Velocity of the counterface (m/s).
+    pub(crate) belt: f64,
     choice: Choice,
     plan: Plan,
 }
@@ -83,25 +85,10 @@ impl Simulation {
         Ok(Motion::new(&trajectory, plan, &self.setting))
     }
 
-    /// Title of the scenario.
-    pub(crate) fn title(&self) -> &str {
-        &self.title
-    }
-
-    /// Description of the scenario.
-    pub(crate) fn description(&self) -> &str {
-        &self.description
-    }
-
-    /// Name of the law.
-    pub(crate) const fn law(&self) -> &'static str {
-        self.law
-    }
-
     /// Friction force (N) at a `velocity` (m/s) relative to the counterface and internal `states`; `losing` tells that
     /// the speed falls.
     pub(crate) fn friction(&self, velocity: f64, states: &[f64], losing: bool) -> f64 {
-        self.contact.coefficient(velocity, states, losing) * self.setting.normal_load
+        (self.contact.coefficient)(velocity, states, losing) * self.setting.normal_load
     }
 
     /// The units of position, velocity and force: those of an angle for a pendulum of length 1.
@@ -110,11 +97,6 @@ impl Simulation {
             Restoring::Sine { length: 1.0 } => ["rad", "rad/s", "N m"],
             _ => ["m", "m/s", "N"],
         }
-    }
-
-    /// Velocity of the counterface (m/s).
-    pub(crate) const fn belt(&self) -> f64 {
-        self.belt
     }
 }
 

@@ -1,11 +1,10 @@
 //! Pictures of a motion: motion.svg and friction.svg.
 
 use std::error::Error;
-use std::path::Path;
 
 use fmm_sim::SimulationError;
 
-use crate::figure::{self, Layer, Panel, Role};
+use crate::figure::{Panel, Role, drawn, label};
 use crate::scenario::{Motion, Plan, Simulation};
 
 /// Points of a curve besides those at events.
@@ -14,12 +13,11 @@ const POINTS: usize = 2000;
 /// Events marked in a curve; more of them would hide it.
 const MOST_MARKS: usize = 500;
 
-/// Draws what the motion was and what friction did, into `folder`. The curves are sampled again, whatever the output of
-/// the scenario.
+/// The motion and its friction. The curves are sampled again, whatever the output of the scenario.
 ///
 /// # Errors
-/// If the motion cannot be simulated again or a file cannot be written.
-pub(crate) fn draw(folder: &Path, scenario: &Simulation, motion: &Motion) -> Result<(), Box<dyn Error>> {
+/// If the motion cannot be simulated again.
+pub(crate) fn pictures(scenario: &Simulation, motion: &Motion) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
     let end = motion.samples.t.last().copied().unwrap_or(0.0);
     let end = motion.events.last().map_or(end, |event| event.t.max(end));
     let mut times: Vec<f64> = (0..=POINTS).map(|index| end * index as f64 / POINTS as f64).collect();
@@ -31,13 +29,14 @@ pub(crate) fn draw(folder: &Path, scenario: &Simulation, motion: &Motion) -> Res
         Err(error) if matches!(error.downcast_ref(), Some(SimulationError::NotSupported { .. })) => motion.clone(),
         Err(error) => return Err(error),
     };
-    figure::stacked(&folder.join("motion.svg"), &motion_panels(scenario, &dense))?;
-    figure::stacked(&folder.join("friction.svg"), &friction_panels(scenario, &dense))?;
-    Ok(())
+    Ok(vec![
+        ("motion.svg", drawn(&motion_panels(scenario, &dense))),
+        ("friction.svg", drawn(&friction_panels(scenario, &dense))),
+    ])
 }
 
-fn curve(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
-    times.iter().copied().zip(values.iter().copied()).collect()
+fn curve(times: &[f64], values: &[f64]) -> impl Iterator<Item = (f64, f64)> {
+    times.iter().copied().zip(values.iter().copied())
 }
 
 fn motion_panels(scenario: &Simulation, motion: &Motion) -> Vec<Panel> {
@@ -45,45 +44,44 @@ fn motion_panels(scenario: &Simulation, motion: &Motion) -> Vec<Panel> {
     let (times, samples) = (&motion.samples.t, &motion.samples);
     let events = motion.events.iter().skip(1).take(MOST_MARKS);
     let panel = |name: &str, unit: &str, values: &[f64], events: Vec<(f64, f64)>| {
-        Panel::new("time / s", figure::label(name, unit), 340.0)
-            .with(Layer::new(Role::Fitted, name, curve(times, values)))
-            .with(Layer::new(Role::Points, "events", events))
+        Panel::new("time / s", label(name, unit), 340.0).with(Role::Fitted, name, curve(times, values)).with(
+            Role::Points,
+            "events",
+            events,
+        )
     };
     let mut panels = vec![
         panel("position", position, &samples.x, events.clone().map(|event| (event.t, event.x)).collect()),
         panel("velocity", velocity, &samples.v, events.map(|event| (event.t, event.v)).collect()),
     ];
     if let [state] = &samples.z[..] {
-        let layer = Layer::new(Role::Residual, "deflection of the bristles", curve(times, state));
-        panels.push(Panel::new("time / s", figure::label("deflection", position), 240.0).with(layer));
+        let panel = Panel::new("time / s", label("deflection", position), 240.0);
+        panels.push(panel.with(Role::Residual, "deflection of the bristles", curve(times, state)));
     }
     panels
 }
 
 fn friction_panels(scenario: &Simulation, motion: &Motion) -> Vec<Panel> {
-    let passed = Layer::new(Role::Fitted, "friction along the motion", friction(scenario, motion));
     let [_, velocity, force] = scenario.units();
-    let force = Panel::new(
-        figure::label("velocity relative to the counterface", velocity),
-        figure::label("friction", force),
-        340.0,
-    )
-    .with(passed);
+    let velocity = label("velocity relative to the counterface", velocity);
+    let force = Panel::new(velocity, label("friction", force), 340.0).with(
+        Role::Fitted,
+        "friction along the motion",
+        friction(scenario, motion),
+    );
     let (times, energy) = (&motion.samples.t, &motion.energy);
-    let mut balance = Panel::new("time / s", figure::label("energy", "J"), 440.0);
+    let mut balance = Panel::new("time / s", label("energy", "J"), 440.0);
     if let Some(work) = &energy.work {
         let sum =
             |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(one, other)| one + other).collect::<Vec<_>>();
         let rubbed = sum(&energy.total, &work.friction);
-        let all = curve(times, &sum(&rubbed, &work.viscous));
-        balance = balance.with(Layer::new(Role::Measured, "+ lost to damping", all)).with(Layer::new(
+        balance = balance.with(Role::Measured, "+ lost to damping", curve(times, &sum(&rubbed, &work.viscous))).with(
             Role::Fitted,
             "+ lost to friction",
             curve(times, &rubbed),
-        ));
+        );
     }
-    let kept = Layer::new(Role::Residual, "kinetic + potential", curve(times, &energy.total));
-    vec![force, balance.with(kept)]
+    vec![force, balance.with(Role::Residual, "kinetic + potential", curve(times, &energy.total))]
 }
 
 /// Friction force (N) against the relative velocity (m/s), in the order in which the motion passes through it. A
@@ -95,7 +93,7 @@ fn friction(scenario: &Simulation, motion: &Motion) -> Vec<(f64, f64)> {
     let mut events = motion.events.iter().peekable();
     let mut current = motion.events.first();
     for (index, (t, v)) in samples.t.iter().zip(&samples.v).enumerate() {
-        let velocity = v - scenario.belt();
+        let velocity = v - scenario.belt;
         while let Some(event) = events.next_if(|event| event.t <= *t) {
             // A law of the speed jumps at zero velocity, from one limit to the other or to the static level.
             let limit = |sign: f64, losing| (0.0, scenario.friction(f64::MIN_POSITIVE * sign, &[], losing));

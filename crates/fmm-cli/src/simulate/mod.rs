@@ -13,7 +13,7 @@ use clap::Args;
 
 use crate::figure::{ends, label};
 use crate::files;
-use crate::output::{Output, drawn, print};
+use crate::output::{Output, print};
 use crate::scenario::{Motion, Simulation};
 
 /// Simulates a machine with a sliding contact.
@@ -29,10 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = &arguments.scenario;
     let scenario = Simulation::read(&files::text(path)?).map_err(files::named(path))?;
     let motion = scenario.run().map_err(files::named(path))?;
-    if let Some(folder) = arguments.output.folder()? {
-        figures::draw(folder, &scenario, &motion)?;
-        drawn(folder, "{motion,friction}.svg");
-    }
+    arguments.output.draw("{motion,friction}.svg", || figures::pictures(&scenario, &motion))?;
     if arguments.output.json {
         print(serde_json::to_string(&motion)?)
     } else {
@@ -55,12 +52,12 @@ struct Report<'a> {
 impl fmt::Display for Report<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { scenario, motion } = self;
-        for line in [scenario.title(), scenario.description()] {
+        for line in [&scenario.title, &scenario.description] {
             if !line.is_empty() {
                 writeln!(f, "{line}")?;
             }
         }
-        writeln!(f, "law {}, engine {}\n", scenario.law(), motion.engine)?;
+        writeln!(f, "law {}, engine {}\n", scenario.law, motion.engine)?;
 
         let [position, velocity, _] = scenario.units();
         let head = [label("x", position), label("v", velocity)];

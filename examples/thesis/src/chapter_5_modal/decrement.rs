@@ -7,7 +7,7 @@ use super::program_a2;
 use super::simulated::{machine, motion, record};
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Panel, Role, label};
 
 /// White noise (m/s) of the record of the targets and of Fig. 10.
 const NOISE: f64 = 1e-5;
@@ -112,8 +112,8 @@ fn targets(chapter: &mut Chapter, coded: &Cycles, fitted: &Cycles) {
 
 fn figure_10(chapter: &mut Chapter, coded: &Cycles, fitted: &Cycles) {
     let panel = Panel::new(label("peak velocity of the cycle", "m/s"), label("damping c", "N s/m"), 380.0)
-        .with(Layer::new(Role::Points, "simulated record, A2", coded.points.clone()))
-        .with(Layer::new(Role::Fitted, "by fitted peaks", fitted.points.clone()));
+        .with(Role::Points, "simulated record, A2", coded.points.clone())
+        .with(Role::Fitted, "by fitted peaks", fitted.points.clone());
     chapter.figure(
         "figure_10",
         format!(

@@ -10,7 +10,7 @@ use super::windows::Column;
 use crate::printed::{INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::INTERVAL;
 use crate::{Chapter, Found, Settings};
-use fmm_cli::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Panel, Role, label};
 
 /// Release of the record of Figs 8 and 9 (m), that of program A1.
 const RELEASE: f64 = 0.02;
@@ -46,13 +46,9 @@ pub(super) fn complete_test(chapter: &mut Chapter, settings: &Settings<'_>) -> F
         let time = label("time", "s");
         [
             Panel::new(time.clone(), label("velocity", "m/s"), 300.0)
-                .with(Layer::new(Role::Measured, "simulated record", measured))
-                .with(Layer::new(Role::Fitted, "linear damping, fitted", fitted)),
-            Panel::new(time, label("residual", "mm/s"), 200.0).with(Layer::new(
-                Role::Residual,
-                "record less fit",
-                residual,
-            )),
+                .with(Role::Measured, "simulated record", measured)
+                .with(Role::Fitted, "linear damping, fitted", fitted),
+            Panel::new(time, label("residual", "mm/s"), 200.0).with(Role::Residual, "record less fit", residual),
         ]
     };
     let truth = format!(
@@ -88,16 +84,16 @@ pub(super) fn figure_12(chapter: &mut Chapter, [right, appendix]: &[Column; 2]) 
     let x_label = label("peak velocity", "m/s");
     let panels = [
         Panel::new(x_label.clone(), label("damping c", "N s/m"), 420.0)
-            .with(Layer::new(Role::Points, "Table 1, as printed", points(&printed)))
-            .with(Layer::new(
+            .with(Role::Points, "Table 1, as printed", points(&printed))
+            .with(
                 Role::Fitted,
                 format!("regression: {:.4} V + {:.4}", line.slope(), line.intercept()),
                 points(&regression),
-            ))
-            .with(Layer::new(Role::Residual, "five-cycle fits, c₂ = 0.437 (A5)", points(&appendix.damping))),
+            )
+            .with(Role::Residual, "five-cycle fits, c₂ = 0.437 (A5)", points(&appendix.damping)),
         Panel::new(x_label, label("c less line", "10⁻³ N s/m"), 300.0)
-            .with(Layer::new(Role::Points, "Table 1, as printed", less_line(&printed)))
-            .with(Layer::new(Role::Fitted, "five-cycle fits, c₂ = 0.5148", less_line(&right.damping))),
+            .with(Role::Points, "Table 1, as printed", less_line(&printed))
+            .with(Role::Fitted, "five-cycle fits, c₂ = 0.5148", less_line(&right.damping)),
     ];
     chapter.figure(
         "figure_12",

@@ -189,7 +189,7 @@ pub(super) fn figure_11(chapter: &mut Chapter, computed: &Computed) -> Found<()>
             all.trials(),
             all.standard_uncertainty(0)?
         ),
-        svg: figure::drawn_histogram("coefficient of friction", "refits", all.values(0)?),
+        svg: figure::histogram("coefficient of friction", "refits", all.values(0)?),
     });
     Ok(())
 }

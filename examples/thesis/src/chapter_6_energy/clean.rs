@@ -10,7 +10,7 @@ use super::{Example, SLOWEST, friction};
 use crate::ring_down::{INTERVAL, over_time, velocity_record};
 use crate::target::number;
 use crate::{Chapter, Criterion, Found, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 pub(super) fn add(chapter: &mut Chapter, example: &Example) -> Found<()> {
     let difference = exact_difference(example)?;
@@ -216,8 +216,8 @@ fn figures(chapter: &mut Chapter, example: &Example, difference: &Difference) {
     let curve = |motion: &fmm_sim::Trajectory| over_time(motion.velocity().values(), 1e3);
     let truth = "μ = 0.25 at 7 N, 10 mm, m, k and c of Table 2";
     let velocities = Panel::new("time / s", "velocity / (mm/s)", 300.0)
-        .with(Layer::new(Role::Reference, "without contact", curve(&example.without)))
-        .with(Layer::new(Role::Measured, "with contact", curve(&example.contact)));
+        .with(Role::Reference, "without contact", curve(&example.without))
+        .with(Role::Measured, "with contact", curve(&example.contact));
     chapter.figure(
         "figure_13",
         format!("Fig. 13. Velocity with and without contact. Both simulated: {truth}."),
@@ -230,9 +230,9 @@ fn figures(chapter: &mut Chapter, example: &Example, difference: &Difference) {
             .collect();
         let of = |part: &dyn Fn(&(f64, f64)) -> f64| over_time(&all.iter().map(part).collect::<Vec<_>>(), 1e3);
         Panel::new("time / s", format!("energy {title} / mJ"), 280.0)
-            .with(Layer::new(Role::Measured, "kinetic", of(&|energy| energy.0)))
-            .with(Layer::new(Role::Reference, "potential", of(&|energy| energy.1)))
-            .with(Layer::new(Role::Fitted, "total", of(&|energy| energy.0 + energy.1)))
+            .with(Role::Measured, "kinetic", of(&|energy| energy.0))
+            .with(Role::Reference, "potential", of(&|energy| energy.1))
+            .with(Role::Fitted, "total", of(&|energy| energy.0 + energy.1))
     };
     chapter.figure(
         "figure_14",
@@ -242,22 +242,19 @@ fn figures(chapter: &mut Chapter, example: &Example, difference: &Difference) {
             energies(&example.scenario, &example.contact, "with contact"),
         ],
     );
-    let rates = |points: &[EnergyRate]| points.iter().map(|point| (1e3 * point.velocity, 1e3 * point.rate)).collect();
+    let rates =
+        |points: &[EnergyRate]| points.iter().map(|point| (1e3 * point.velocity, 1e3 * point.rate)).collect::<Vec<_>>();
     let panel = Panel::new("velocity / (mm/s)", "rate of energy / mW", 300.0)
-        .with(Layer::new(Role::Points, "with contact, simulated", rates(&difference.contact)))
-        .with(Layer::new(Role::Reference, "without contact, simulated", rates(&difference.free)));
+        .with(Role::Points, "with contact, simulated", rates(&difference.contact))
+        .with(Role::Reference, "without contact, simulated", rates(&difference.free));
     chapter.figure(
         "figure_15",
         format!("Fig. 15. Rate of energy against velocity, from velocity alone. Both records simulated without noise: {truth}."),
         &[panel],
     );
-    let missing = difference.missing.iter().map(|(v, rate)| (1e3 * v, 1e3 * rate)).collect();
-    let force = difference.missing.iter().map(|(v, rate)| (1e3 * v, rate / v)).collect();
-    let truth_line = [-1.0, 1.0].map(|sign| {
-        let ends = [SLOWEST, 0.1257].map(|speed| (1e3 * sign * speed, sign * friction()));
-        Layer::new(if sign > 0.0 { Role::Fitted } else { Role::FittedAgain }, "μ N", ends.to_vec())
-    });
-    let [negative, positive] = truth_line;
+    let missing = difference.missing.iter().map(|(v, rate)| (1e3 * v, 1e3 * rate));
+    let force = difference.missing.iter().map(|(v, rate)| (1e3 * v, rate / v));
+    let level = |sign: f64| [SLOWEST, 0.1257].map(|speed| (1e3 * sign * speed, sign * friction()));
     chapter.figure(
         "figure_16",
         format!(
@@ -267,11 +264,11 @@ fn figures(chapter: &mut Chapter, example: &Example, difference: &Difference) {
         ),
         &[
             Panel::new("velocity / (mm/s)", "rate difference / mW", 280.0)
-                .with(Layer::new(Role::Points, "simulated records", missing)),
+                .with(Role::Points, "simulated records", missing),
             Panel::new("velocity / (mm/s)", "friction force / N", 280.0)
-                .with(Layer::new(Role::Points, "simulated records", force))
-                .with(negative)
-                .with(positive),
+                .with(Role::Points, "simulated records", force)
+                .with(Role::Fitted, "μ N", level(-1.0))
+                .with(Role::Fitted, "μ N", level(1.0)),
         ],
     );
 }

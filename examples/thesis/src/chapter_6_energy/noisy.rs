@@ -9,7 +9,7 @@ use super::weak_form::WeakForm;
 use super::{Example, SLOWEST, friction};
 use crate::ring_down::{INTERVAL, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// White noise of the velocity (m/s).
 const NOISE: [f64; 4] = [0.0, 1e-5, 1e-4, 1e-3];
@@ -247,18 +247,16 @@ fn figure(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4]) 
     let fastest = raw.points().iter().fold(0.0f64, |top, point| top.max(point.velocity.abs()));
     let speeds = (0..=50).map(|i| SLOWEST + (fastest - SLOWEST) * f64::from(i) / 50.0);
     let speeds: Vec<f64> = speeds.collect();
-    let modelled = |sign: f64, of: &dyn Fn(f64) -> f64| -> Layer {
-        let curve = speeds.iter().map(|speed| (1e3 * sign * speed, of(sign * speed))).collect();
-        let role = if sign > 0.0 { Role::Fitted } else { Role::FittedAgain };
-        Layer::new(role, format!("weak form, {force:.3} N"), curve)
+    let modelled = |panel: Panel, sign: f64, of: &dyn Fn(f64) -> f64| {
+        let curve = speeds.iter().map(|speed| (1e3 * sign * speed, of(sign * speed)));
+        panel.with(Role::Fitted, format!("weak form, {force:.3} N"), curve)
     };
     let rate = |v: f64| 1e3 * (-v * oscillator.damping().force(v) - force * v.abs());
     let level = |v: f64| force * v.signum();
     let panel = |y: &str, name: &str, points: Vec<(f64, f64)>, of: &dyn Fn(f64) -> f64| {
-        Panel::new("velocity / (mm/s)", y, 260.0)
-            .with(Layer::new(Role::Points, format!("simulated record, {name}"), points))
-            .with(modelled(-1.0, of))
-            .with(modelled(1.0, of))
+        let panel = Panel::new("velocity / (mm/s)", y, 260.0);
+        let panel = panel.with(Role::Points, format!("simulated record, {name}"), points);
+        modelled(modelled(panel, -1.0, of), 1.0, of)
     };
     let watts = |point: &EnergyRate| 1e3 * point.rate;
     let newtons = |point: &EnergyRate| point.friction;
@@ -270,7 +268,7 @@ fn figure(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4]) 
          same record.",
         &[
             Panel::new("time / s", "velocity / (mm/s)", 220.0)
-                .with(Layer::new(Role::Measured, "simulated record", over_time(record.values(), 1e3))),
+                .with(Role::Measured, "simulated record", over_time(record.values(), 1e3)),
             panel("rate of energy / mW", "not smoothed", points(&raw, &watts), &rate),
             panel("friction force / N", "not smoothed", points(&raw, &newtons), &level),
             panel("friction force / N", "Savitzky-Golay 41/3", points(&smooth, &newtons), &level),

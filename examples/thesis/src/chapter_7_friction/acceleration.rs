@@ -10,7 +10,7 @@ use super::{Known, LOAD_4, LOAD_5, Release, fit_panels, largest, seed, value};
 use crate::printed::TABLE_5;
 use crate::ring_down::{INTERVAL, Viscous};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// Truth of the law where it holds: μ₁ while the speed grows, μ₂ while it falls.
 const HYSTERETIC: [f64; 2] = [0.27, 0.23];
@@ -175,14 +175,14 @@ fn figures(chapter: &mut Chapter, settings: &Settings<'_>, floor: &[(f64, [f64; 
         ),
         &fit_panels(&record, &fit),
     );
-    let branch = |j: usize| floor.iter().map(|(v, found)| (*v, found[j])).collect();
+    let branch = |j: usize| floor.iter().map(move |(v, found)| (*v, found[j]));
     chapter.figure(
         "figure_22",
         "Fig. 22. The two levels of Eq. 7.3 against the highest velocity. The records are simulated with Eq. 7.4 by the rows of Table 5 \
          at 8.604 N, a law without hysteresis: its difference of the two levels is an artefact of the fit.",
         &[Panel::new("highest velocity / (m/s)", "coefficient of friction at 8.604 N", 300.0)
-            .with(Layer::new(Role::FittedPoints, "μ₁, speed grows", branch(0)))
-            .with(Layer::new(Role::ResidualPoints, "μ₂, speed falls", branch(1)))],
+            .with(Role::FittedPoints, "μ₁, speed grows", branch(0))
+            .with(Role::ResidualPoints, "μ₂, speed falls", branch(1))],
     );
     Ok(())
 }
@@ -256,11 +256,11 @@ fn band_figure(chapter: &mut Chapter, release: &Release<'_>, oscillator: Oscilla
     let line = |level: f64, loads: [f64; 2]| loads.map(|load| (load, (load - level) / mass)).to_vec();
     let (low, high) = (levels[1] - 0.6, levels[0] + 0.6);
     let branches = Panel::new("−k x − c v / N", "acceleration for v > 0 / (m/s²)", 280.0)
-        .with(Layer::new(Role::Measured, "a branch that contradicts itself", line(levels[0], [levels[1], levels[0]])))
-        .with(Layer::new(Role::MeasuredAgain, "the other", line(levels[1], [levels[1], levels[0]])))
-        .with(Layer::new(Role::Reference, "a branch that holds", line(levels[0], [levels[0], high])))
-        .with(Layer::new(Role::ReferenceAgain, "the other", line(levels[1], [low, levels[1]])))
-        .with(Layer::new(Role::Fitted, "constant speed", vec![(levels[1], 0.0), (levels[0], 0.0)]));
+        .with(Role::Measured, "a branch that contradicts itself", line(levels[0], [levels[1], levels[0]]))
+        .with(Role::Measured, "", line(levels[1], [levels[1], levels[0]]))
+        .with(Role::Reference, "a branch that holds", line(levels[0], [levels[0], high]))
+        .with(Role::Reference, "", line(levels[1], [low, levels[1]]))
+        .with(Role::Fitted, "constant speed", vec![(levels[1], 0.0), (levels[0], 0.0)]);
     let sampling = Sampling::uniform(INTERVAL, 2500)?;
     let scenario = release.scenario::<AccelerationCoulomb>()?;
     let around = last[0].time - 0.03..last[1].time + 0.03;
@@ -270,8 +270,8 @@ fn band_figure(chapter: &mut Chapter, release: &Release<'_>, oscillator: Oscilla
         values.filter(|(time, _)| around.contains(time)).collect()
     };
     let detail = Panel::new("time / s", "velocity / (mm/s)", 280.0)
-        .with(Layer::new(Role::Measured, "thesis' Euler motion", near(&Thesis::A3.run(&scenario, &sampling)?)))
-        .with(Layer::new(Role::Fitted, "exact motion", near(&Exact.run(&scenario, &sampling)?)));
+        .with(Role::Measured, "thesis' Euler motion", near(&Thesis::A3.run(&scenario, &sampling)?))
+        .with(Role::Fitted, "exact motion", near(&Exact.run(&scenario, &sampling)?));
     chapter.figure(
         "equation_7_3_band",
         format!(

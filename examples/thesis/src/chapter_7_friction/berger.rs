@@ -8,7 +8,7 @@ use super::{Known, LOAD_5, Release, fit_panels, largest, rms, seed, value};
 use crate::printed::TABLE_5;
 use crate::ring_down::Viscous;
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// White noise of the tests (m/s).
 const NOISE: f64 = 5e-4;
@@ -240,34 +240,28 @@ fn figures(chapter: &mut Chapter, settings: &Settings<'_>, rows: &[Row]) -> Foun
         Ok((0..=100).map(|i| fastest * f64::from(i) / 100.0).map(|v| (v, law.coefficient(v))).collect())
     };
     let mut printed = Panel::new("speed / (m/s)", "coefficient at 8.604 N", 280.0);
-    for (i, row) in TABLE_5.iter().enumerate().take(last) {
-        let role = if i == 0 { Role::Reference } else { Role::ReferenceAgain };
-        printed = printed.with(Layer::new(role, "Table 5, 10 to 15 mm", curve([row[2], row[3], row[4]], 1.5)?));
+    for row in TABLE_5.iter().take(last) {
+        printed = printed.with(Role::Reference, "Table 5, 10 to 15 mm", curve([row[2], row[3], row[4]], 1.5)?);
     }
-    let mut tests = Panel::new("speed / (m/s)", "coefficient at 8.604 N", 280.0).with(Layer::new(
+    let mut tests = Panel::new("speed / (m/s)", "coefficient at 8.604 N", 280.0).with(
         Role::Measured,
         "truth, 16 mm",
         curve(rows[last].truth, 1.5)?,
-    ));
-    for (i, test) in rows[last].tests.iter().take(5).enumerate() {
-        let role = if i == 0 { Role::Fitted } else { Role::FittedAgain };
-        tests = tests.with(Layer::new(role, "five simulated tests", curve(*test, 1.5)?));
+    );
+    for test in rows[last].tests.iter().take(5) {
+        tests = tests.with(Role::Fitted, "five simulated tests", curve(*test, 1.5)?);
     }
-    let tested = |role: Role| {
-        Layer::new(
-            role,
-            "fastest in the test",
-            vec![(row[1], curve(rows[last].truth, row[1]).map_or(0.0, |curve| curve[100].1))],
-        )
-    };
-    printed = printed
-        .with(Layer::new(Role::Fitted, "Table 5, 16 mm", curve(rows[last].truth, 1.5)?))
-        .with(tested(Role::FittedPoints));
+    let tested = [(row[1], curve(rows[last].truth, row[1])?[100].1)];
+    printed = printed.with(Role::Fitted, "Table 5, 16 mm", curve(rows[last].truth, 1.5)?).with(
+        Role::FittedPoints,
+        "fastest in the test",
+        tested,
+    );
     chapter.figure(
         "figure_24",
         "Fig. 24. Coefficient against speed by Eq. 7.4. Top: the printed rows of Table 5, far beyond the speeds of the tests. Bottom: five \
          fits to simulated tests of 16 mm with 0.5 mm/s of noise; where there were no speeds they tell little.",
-        &[printed, tests.with(tested(Role::ResidualPoints))],
+        &[printed, tests.with(Role::ResidualPoints, "fastest in the test", tested)],
     );
     Ok(())
 }

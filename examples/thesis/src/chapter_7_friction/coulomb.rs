@@ -8,7 +8,7 @@ use super::{Known, LOAD_4, Release, fit_panels, largest, rms, seed, value};
 use crate::printed::{MACHINE, TABLE_4};
 use crate::ring_down::{INTERVAL, Viscous, over_time, velocity_record};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// White noise of the round trip (m/s).
 const NOISE: f64 = 2e-4;
@@ -180,12 +180,10 @@ fn figures(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
     let mut departures = Panel::new("time / s", "test − mean of five / (mm/s)", 200.0);
     let tests = (0..5).map(test).collect::<Found<Vec<_>>>()?;
     let mean = |i: usize| tests.iter().map(|test| test.values()[i]).sum::<f64>() / tests.len() as f64;
-    for (i, test) in tests.iter().enumerate() {
-        let role = if i == 0 { Role::Measured } else { Role::MeasuredAgain };
-        velocities = velocities.with(Layer::new(role, "five simulated tests", over_time(test.values(), 1e3)));
+    for test in &tests {
+        velocities = velocities.with(Role::Measured, "five simulated tests", over_time(test.values(), 1e3));
         let left: Vec<f64> = test.values().iter().enumerate().map(|(i, v)| v - mean(i)).collect();
-        let role = if i == 0 { Role::Residual } else { Role::ResidualAgain };
-        departures = departures.with(Layer::new(role, "departures of the tests", over_time(&left, 1e3)));
+        departures = departures.with(Role::Residual, "departures of the tests", over_time(&left, 1e3));
     }
     chapter.figure(
         "figure_18",

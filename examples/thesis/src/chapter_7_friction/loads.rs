@@ -8,7 +8,7 @@ use super::{Known, LOAD_4, LOAD_5, Release, largest, rms, value};
 use crate::printed::{TABLE_4, TABLE_5};
 use crate::ring_down::Viscous;
 use crate::{Chapter, Criterion, Found, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// The loads that are tried (N).
 const LOADS: [f64; 2] = [LOAD_4, LOAD_5];
@@ -253,10 +253,11 @@ fn finding(chapter: &mut Chapter, four: &Residue, five: &Residue, ratio: f64) {
 
 fn figure(chapter: &mut Chapter, tables: [&[Row]; 2], residues: [&Residue; 2]) {
     let panels = tables.into_iter().zip(residues).zip([4, 5]).map(|((rows, residue), number)| {
-        let points = |left: &[f64]| rows.iter().zip(left).map(|(row, left)| (row.displacement, *left)).collect();
+        let points =
+            |left: &[f64]| rows.iter().zip(left).map(|(row, left)| (row.displacement, *left)).collect::<Vec<_>>();
         Panel::new("initial displacement / mm", format!("Table {number}, ours − thesis / (mm/s)"), 260.0)
-            .with(Layer::new(Role::FittedPoints, "14 N", points(&residue.left[0])))
-            .with(Layer::new(Role::ResidualPoints, "8.604 N", points(&residue.left[1])))
+            .with(Role::FittedPoints, "14 N", points(&residue.left[0]))
+            .with(Role::ResidualPoints, "8.604 N", points(&residue.left[1]))
     });
     chapter.figure(
         "tables_4_5_loads",

@@ -20,7 +20,7 @@ use fmm_sim::Sampling;
 
 use crate::ring_down::{INTERVAL, Viscous, machine, motion, over_time, scenario, velocity_record, with_noise};
 use crate::{Chapter, Found, Settings, printed};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// The numbers of chapter 7 beside ours.
 ///
@@ -173,12 +173,9 @@ fn fit_panels(record: &Record, fit: &Fit) -> [Panel; 2] {
     let left: Vec<f64> = fit.residuals().iter().map(|left| -left).collect();
     let fitted: Vec<f64> = record.values().iter().zip(&left).map(|(v, left)| v - left).collect();
     let velocities = Panel::new("time / s", "velocity / (mm/s)", 280.0)
-        .with(Layer::new(Role::Measured, "simulated record", over_time(record.values(), 1e3)))
-        .with(Layer::new(Role::Fitted, "fit", over_time(&fitted, 1e3)));
-    let residuals = Panel::new("time / s", "record − fit / (mm/s)", 180.0).with(Layer::new(
-        Role::Residual,
-        "residual",
-        over_time(&left, 1e3),
-    ));
+        .with(Role::Measured, "simulated record", over_time(record.values(), 1e3))
+        .with(Role::Fitted, "fit", over_time(&fitted, 1e3));
+    let residuals =
+        Panel::new("time / s", "record − fit / (mm/s)", 180.0).with(Role::Residual, "residual", over_time(&left, 1e3));
     [velocities, residuals]
 }

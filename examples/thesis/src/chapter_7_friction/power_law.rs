@@ -5,7 +5,7 @@ use fmm_fit::{Bounds, Dual, Fit, Options, Parameter, Scalar, curve, f_test, solv
 use super::largest;
 use crate::printed::{EQUATION_7_2, TABLE_4};
 use crate::{Chapter, Criterion, Found, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 pub(super) fn add(chapter: &mut Chapter) -> Found<()> {
     let columns = TABLE_4.iter().map(|row| (row.1, row.2));
@@ -173,7 +173,7 @@ fn finding(chapter: &mut Chapter, linear: &Column, mean: &Column) -> Found<()> {
 }
 
 fn figure(chapter: &mut Chapter, linear: &Column, mean: &Column) {
-    let curve = |law: &dyn Fn(f64) -> f64| {
+    let curve = |law: &dyn Fn(f64) -> f64| -> Vec<_> {
         (0..=100).map(|i| 0.08 + 0.205 * f64::from(i) / 100.0).map(|v| (v, law(v))).collect()
     };
     chapter.figure(
@@ -181,12 +181,12 @@ fn figure(chapter: &mut Chapter, linear: &Column, mean: &Column) {
         "Fig. 20. Coefficient against highest velocity: the printed rows of Table 4, Eq. 7.2 as printed, and the least-squares curve \
          without a constant. No measurement is simulated here.",
         &[Panel::new("highest velocity / (m/s)", "coefficient of friction", 320.0)
-            .with(Layer::new(Role::Points, "Table 4, mean c", mean.points()))
-            .with(Layer::new(Role::ResidualPoints, "Table 4, linear c, where it differs", {
+            .with(Role::Points, "Table 4, mean c", mean.points())
+            .with(Role::ResidualPoints, "Table 4, linear c, where it differs", {
                 let differs = |point: &(f64, f64)| !mean.points().contains(point);
-                linear.points().into_iter().filter(differs).collect()
-            }))
-            .with(Layer::new(Role::Fitted, "Eq. 7.2 as printed", curve(&printed)))
-            .with(Layer::new(Role::Reference, "a v^b, least squares", curve(&|v| mean.without_offset.value(v))))],
+                linear.points().into_iter().filter(differs)
+            })
+            .with(Role::Fitted, "Eq. 7.2 as printed", curve(&printed))
+            .with(Role::Reference, "a v^b, least squares", curve(&|v| mean.without_offset.value(v)))],
     );
 }

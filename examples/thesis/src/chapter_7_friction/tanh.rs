@@ -8,7 +8,7 @@ use fmm_sim::{Engine, Sampling, Thesis};
 use super::{Known, LOAD_5, Release, fit_panels, rms, seed, value};
 use crate::ring_down::{INTERVAL, Viscous, machine, motion, over_time, scenario};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// Where A6 starts: γ₁ to γ₅, and γ₆ = 0.
 const A6: [f64; 6] = [0.25, 100.0, 10.0, 0.1, 100.0, 0.0];
@@ -176,11 +176,11 @@ fn unshifted(chapter: &mut Chapter) -> Found<()> {
          (0.39, 500, 5, 0.24, 500) at 8.604 N from 0.28 m/s. Bottom: the end of the motion.",
         &[
             Panel::new("time / s", "velocity / (mm/s)", 260.0)
-                .with(Layer::new(Role::Reference, "raw law (A6)", over_time(&one[..2400], 1e3)))
-                .with(Layer::new(Role::Fitted, "shifted law (text)", over_time(&other[..2400], 1e3))),
+                .with(Role::Reference, "raw law (A6)", over_time(&one[..2400], 1e3))
+                .with(Role::Fitted, "shifted law (text)", over_time(&other[..2400], 1e3)),
             Panel::new("time / s", "velocity / (mm/s)", 220.0)
-                .with(Layer::new(Role::Reference, "raw law (A6)", late(one)))
-                .with(Layer::new(Role::Fitted, "shifted law (text)", late(other))),
+                .with(Role::Reference, "raw law (A6)", late(one))
+                .with(Role::Fitted, "shifted law (text)", late(other)),
         ],
     );
     Ok(())
@@ -207,11 +207,11 @@ fn shapes(chapter: &mut Chapter) -> Found<()> {
         "Fig. 25. Steps from Eq. 7.5, with +γ₄, to the shifted law, for the start values of A6: the raw curve, its two inflections, and what \
          lies beyond them.",
         &[axes()
-            .with(Layer::new(Role::Measured, "raw law", odd(&raw, -1.0)))
-            .with(Layer::new(Role::MeasuredAgain, "raw law", odd(&raw, 1.0)))
-            .with(Layer::new(Role::Fitted, "shifted to the axis", odd(&moved, -1.0)))
-            .with(Layer::new(Role::FittedAgain, "shifted to the axis", odd(&moved, 1.0)))
-            .with(Layer::new(Role::ResidualPoints, "inflections", points.to_vec()))],
+            .with(Role::Measured, "raw law", odd(&raw, -1.0))
+            .with(Role::Measured, "raw law", odd(&raw, 1.0))
+            .with(Role::Fitted, "shifted to the axis", odd(&moved, -1.0))
+            .with(Role::Fitted, "shifted to the axis", odd(&moved, 1.0))
+            .with(Role::ResidualPoints, "inflections", points.to_vec())],
     );
     let mut whole = odd(&moved, -1.0);
     whole.reverse();
@@ -222,7 +222,7 @@ fn shapes(chapter: &mut Chapter) -> Found<()> {
             "Fig. 26. The shifted law for the start values of A6. At zero velocity it takes any value between ±{:.4}: the contact sticks.",
             law.breakaway()
         ),
-        &[axes().with(Layer::new(Role::Fitted, "shifted law", whole))],
+        &[axes().with(Role::Fitted, "shifted law", whole)],
     );
     Ok(())
 }
@@ -258,11 +258,11 @@ fn fitted(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
     );
     let mut panels = fit_panels(&record, &shifted_fit).to_vec();
     let left: Vec<f64> = raw_fit.residuals().iter().map(|left| -left).collect();
-    panels.push(Panel::new("time / s", "record − raw / (mm/s)", 180.0).with(Layer::new(
+    panels.push(Panel::new("time / s", "record − raw / (mm/s)", 180.0).with(
         Role::Residual,
         "residual of the raw law",
         over_time(&left, 1e3),
-    )));
+    ));
     chapter.figure(
         "figure_27",
         "Fig. 27. Fit of the shifted law to a test of 22 mm, what it leaves, and what a fit of the raw law leaves. The record is simulated: \
@@ -281,13 +281,13 @@ fn fitted(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
          levels of 0.63 and 0.24 (bottom): an illustration.",
         &[
             axes()
-                .with(Layer::new(Role::Measured, "truth", curve(truth, false)?))
-                .with(Layer::new(Role::Fitted, "fit by the shifted law", curve(shifted_values, false)?))
-                .with(Layer::new(Role::Reference, "fit by the raw law", curve(raw_values, true)?)),
+                .with(Role::Measured, "truth", curve(truth, false)?)
+                .with(Role::Fitted, "fit by the shifted law", curve(shifted_values, false)?)
+                .with(Role::Reference, "fit by the raw law", curve(raw_values, true)?),
             axes()
-                .with(Layer::new(Role::Measured, "γ₂ = 500, γ₃ = 5", curve(ILLUSTRATIONS[0], false)?))
-                .with(Layer::new(Role::Fitted, "γ₂ = 1000, γ₃ = 5", curve(ILLUSTRATIONS[1], false)?))
-                .with(Layer::new(Role::Reference, "γ₂ = 100, γ₃ = 10", curve(ILLUSTRATIONS[2], false)?)),
+                .with(Role::Measured, "γ₂ = 500, γ₃ = 5", curve(ILLUSTRATIONS[0], false)?)
+                .with(Role::Fitted, "γ₂ = 1000, γ₃ = 5", curve(ILLUSTRATIONS[1], false)?)
+                .with(Role::Reference, "γ₂ = 100, γ₃ = 10", curve(ILLUSTRATIONS[2], false)?),
         ],
     );
     Ok(())

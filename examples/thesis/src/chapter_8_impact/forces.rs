@@ -7,7 +7,7 @@ use fmm_uq::Observations;
 use super::blows::{Blow, DURATION, FORCE_NOISE, INTERVAL, LEVELS, NOISE, RATE, SPREAD, Test};
 use super::{COEFFICIENT, LOAD, friction_force};
 use crate::{Chapter, Criterion, Found, Target, printed};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// Mass on the shaft (kg), and gravity (m/s²).
 const HUNG: f64 = 0.680;
@@ -118,8 +118,8 @@ fn impulses(chapter: &mut Chapter, tests: &[Test]) -> Found<()> {
     let mut forces = Panel::new("time / ms", "force / N", 300.0);
     let mut scatter = Panel::new("peak of the force / N", "impulse / (N s)", 300.0);
     let (mut single, mut means, mut texts) = (Vec::new(), Vec::new(), Vec::new());
-    for (test, role) in tests.iter().zip([Role::Measured, Role::MeasuredAgain, Role::MeasuredAgain]) {
-        forces = forces.with(Layer::new(role, "a simulated trial of each level", pulse(&test.trials[0])));
+    for test in tests {
+        forces = forces.with(Role::Measured, "a simulated trial of each level", pulse(&test.trials[0]));
         let impulses = test.impulses();
         let levels: Vec<f64> = test.trials.iter().map(|trial| trial.summary().level).collect();
         let (impulse, level) = (Observations::new(&impulses)?, Observations::new(&levels)?);
@@ -127,11 +127,8 @@ fn impulses(chapter: &mut Chapter, tests: &[Test]) -> Found<()> {
         means.push((level.mean(), impulse.mean()));
         texts.push(format!("{:.3} ± {:.3}", impulse.mean(), impulse.standard_deviation()));
     }
-    scatter = scatter.with(Layer::new(Role::Points, "simulated trials", single)).with(Layer::new(
-        Role::FittedPoints,
-        "mean of each level",
-        means,
-    ));
+    scatter =
+        scatter.with(Role::Points, "simulated trials", single).with(Role::FittedPoints, "mean of each level", means);
     chapter.figure(
         "figure_31",
         format!(
@@ -149,10 +146,9 @@ fn figure_30(chapter: &mut Chapter, test: &Test) {
     let mut forces = Panel::new("time / ms", "force / N", 240.0);
     let mut velocities = Panel::new("time / s", "velocity / (mm/s)", 320.0);
     let name = format!("{} simulated trials", test.trials.len());
-    for (i, trial) in test.trials.iter().enumerate() {
-        let role = if i == 0 { Role::Measured } else { Role::MeasuredAgain };
-        forces = forces.with(Layer::new(role, &name, pulse(trial)));
-        velocities = velocities.with(Layer::new(role, &name, velocity_curve(trial.velocity())));
+    for trial in &test.trials {
+        forces = forces.with(Role::Measured, &name, pulse(trial));
+        velocities = velocities.with(Role::Measured, &name, velocity_curve(trial.velocity()));
     }
     chapter.figure(
         "figure_30",

@@ -10,7 +10,7 @@ use super::forces::{pulse, velocity_curve};
 use super::receptance::SHOWN;
 use super::{COEFFICIENT, LOAD, linear, parts};
 use crate::{Chapter, Criterion, Found, Settings, Target, printed};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// Assumed relative uncertainty of the hammer's calibration (1).
 const HAMMER: f64 = 0.02;
@@ -217,16 +217,12 @@ fn figures(
         test.trials.len()
     );
     let left: Vec<f64> = trial.velocity().iter().zip(&velocity).map(|(record, fit)| record - fit).collect();
-    let forces =
-        Panel::new("time / ms", "force / N", 200.0).with(Layer::new(Role::Measured, "simulated force", pulse(trial)));
+    let forces = Panel::new("time / ms", "force / N", 200.0).with(Role::Measured, "simulated force", pulse(trial));
     let velocities = Panel::new("", "velocity / (mm/s)", 280.0)
-        .with(Layer::new(Role::Measured, "simulated record", velocity_curve(trial.velocity())))
-        .with(Layer::new(Role::Fitted, "fit", velocity_curve(&velocity)));
-    let residuals = Panel::new("time / s", "record − fit / (mm/s)", 180.0).with(Layer::new(
-        Role::Residual,
-        "residual",
-        velocity_curve(&left),
-    ));
+        .with(Role::Measured, "simulated record", velocity_curve(trial.velocity()))
+        .with(Role::Fitted, "fit", velocity_curve(&velocity));
+    let residuals =
+        Panel::new("time / s", "record − fit / (mm/s)", 180.0).with(Role::Residual, "residual", velocity_curve(&left));
     let rest = found.motions()[0].stop_time().map_or_else(
         || "It does not come to rest.".to_owned(),
         |time| format!("It rests {:.2} s after the blow.", time - INTERVAL * trial.begin() as f64),

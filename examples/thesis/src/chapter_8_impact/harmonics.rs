@@ -10,7 +10,7 @@ use super::blows::{Blow, Spectra, Test};
 use super::friction::{fitted_velocity, known_machine, mobilities};
 use super::{COEFFICIENT, LOAD, decibels, linear, over_frequency};
 use crate::{Chapter, Criterion, Found, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// The highest order that is looked at.
 const HIGHEST: u32 = 9;
@@ -117,17 +117,17 @@ fn figure_42(
     let model = spectra.mobility_of_pulse(&trial[0], &model)?;
     let size = |response: &FrequencyResponse| over_frequency(response, |value| decibels(value.norm()));
     let mobilities = Panel::new("", "|mobility| / dB re 1 m/(N s)", 340.0)
-        .with(Layer::new(Role::Measured, "simulated record", size(record)))
-        .with(Layer::new(Role::Fitted, "fit", size(&model)))
-        .with(Layer::new(Role::Reference, "without contact", size(linear)));
+        .with(Role::Measured, "simulated record", size(record))
+        .with(Role::Fitted, "fit", size(&model))
+        .with(Role::Reference, "without contact", size(linear));
     let by_linear = |response: &FrequencyResponse| -> Found<Vec<(f64, f64)>> {
         let spectrum = FrictionSpectrum::of(response, linear)?;
         let levels = spectrum.quotients().iter().map(|quotient| decibels(quotient.norm()));
         Ok(spectrum.frequencies().iter().copied().zip(levels).filter(|(frequency, _)| *frequency > 3.0).collect())
     };
     let ratios = Panel::new("", "|H/H_lin| / dB", 260.0)
-        .with(Layer::new(Role::Measured, "simulated record", by_linear(record)?))
-        .with(Layer::new(Role::Fitted, "fit", by_linear(&model)?));
+        .with(Role::Measured, "simulated record", by_linear(record)?)
+        .with(Role::Fitted, "fit", by_linear(&model)?);
     let clean = spectra.mobility(&blows[1].force, blows[1].velocity())?;
     let friction = FrictionSpectrum::of(&clean, linear)?;
     let fundamental = self::linear()?.natural_angular_frequency() / TAU;
@@ -136,8 +136,8 @@ fn figure_42(
         friction.frequencies().iter().copied().zip(friction.values().map(|value| decibels(value.norm() / first)));
     let square = [1.0, 3.0, 5.0, 7.0, 9.0].map(|order: f64| (order * fundamental, -decibels(order)));
     let forces = Panel::new("frequency / Hz", "friction force / dB re f₀", 280.0)
-        .with(Layer::new(Role::Reference, "of the motion without noise", force.collect()))
-        .with(Layer::new(Role::FittedPoints, "square wave, 1/n", square.to_vec()));
+        .with(Role::Reference, "of the motion without noise", force)
+        .with(Role::FittedPoints, "square wave, 1/n", square.to_vec());
     chapter.figure(
         "figure_42",
         format!(

@@ -13,7 +13,7 @@ use fmm_frf::{FrequencyResponse, SingleDegreeOfFreedom};
 
 use crate::{Chapter, Found, Settings, printed};
 use blows::{Blow, LEVELS, Spectra, Test};
-use fmm_cli::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Panel, Role, label};
 
 /// The numbers of chapter 8 beside ours.
 ///
@@ -63,7 +63,7 @@ fn parts(name: &str, unit: &str, factor: f64, curves: &[(Role, &str, &FrequencyR
     let panel = |part: &str, of: fn(&fmm_frf::Complex64) -> f64, x: &str| {
         let axes = Panel::new(x, label(format!("{part} of {name}"), unit), 260.0);
         curves.iter().fold(axes, |axes, (role, text, response)| {
-            axes.with(Layer::new(*role, *text, over_frequency(response, |value| factor * of(value))))
+            axes.with(*role, *text, over_frequency(response, |value| factor * of(value)))
         })
     };
     [panel("real part", |value| value.re, ""), panel("imaginary part", |value| value.im, "frequency / Hz")]

@@ -9,7 +9,7 @@ use fmm_uq::Observations;
 use super::blows::{Blow, DURATION, LEVELS, RATE, SAMPLES, Spectra, Test, peak_receptance};
 use super::{COEFFICIENT, LOAD, decibels, friction_force, linear, over_frequency, parts};
 use crate::{Chapter, Criterion, Found, Target, printed};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// Expected largest receptances (mm/N) of the three levels.
 const EXPECTED: [f64; 3] = [3.510, 5.034, 5.787];
@@ -169,9 +169,7 @@ fn figure_32_and_33(chapter: &mut Chapter, test: &Test) -> Found<()> {
         ("figure_32", "Fig. 32", "mobility", &mobilities, "mm/(N s)"),
         ("figure_33", "Fig. 33", "receptance", &receptances, "mm/N"),
     ] {
-        let role = |i: usize| if i == 0 { Role::Measured } else { Role::MeasuredAgain };
-        let curves: Vec<_> =
-            responses.iter().enumerate().map(|(i, response)| (role(i), name.as_str(), response)).collect();
+        let curves: Vec<_> = responses.iter().map(|response| (Role::Measured, name.as_str(), response)).collect();
         chapter.figure(
             figure,
             format!(
@@ -196,15 +194,15 @@ fn figure_34(chapter: &mut Chapter, tests: &[Test]) -> Found<()> {
     let machine = linear()?;
     let frequency = machine.natural_angular_frequency() / std::f64::consts::TAU;
     let (mut closed, mut highest) = (Vec::new(), 0.0);
-    for (test, role) in tests.iter().zip([Role::Measured, Role::MeasuredAgain, Role::MeasuredAgain]) {
+    for test in tests {
         let receptance = test.mean.within(SHOWN.0, SHOWN.1)?.converted(ResponseForm::Receptance)?;
         let curve = over_frequency(&receptance, |value| 1e3 * value.norm());
-        panel = panel.with(Layer::new(role, "means of simulated trials", curve));
+        panel = panel.with(Role::Measured, "means of simulated trials", curve);
         let impulse = mean(&test.impulses())?;
         highest = peak_receptance(&test.mean)?.1;
         closed.push((frequency, 1e3 * peak_receptance_of_viscous_coulomb_impact(impulse, &machine, friction_force())?));
     }
-    panel = panel.with(Layer::new(Role::FittedPoints, "closed form, viscous and dry", closed));
+    panel = panel.with(Role::FittedPoints, "closed form, viscous and dry", closed);
     chapter.figure(
         "figure_34",
         format!(
@@ -233,12 +231,12 @@ fn figure_35(chapter: &mut Chapter, tests: &[Test]) -> Found<()> {
     let dry = ends.map(|impulse| peak_receptance_of_coulomb_impact(impulse, machine.mass(), omega, friction_force()));
     let [low, high] = dry;
     let dry = vec![(ends[0], 1e3 * low?), (ends[1], 1e3 * high?)];
-    let means = impulses.iter().copied().zip(peaks.iter().map(|peak| 1e3 * peak)).collect();
+    let means = impulses.iter().copied().zip(peaks.iter().map(|peak| 1e3 * peak));
     let panel = Panel::new("impulse / (N s)", "largest |receptance| / (mm/N)", 360.0)
-        .with(Layer::new(Role::Reference, "π J/(8 F m ω)", dry))
-        .with(Layer::new(Role::Fitted, "line through the means", fitted.to_vec()))
-        .with(Layer::new(Role::Points, "simulated trials", single))
-        .with(Layer::new(Role::FittedPoints, "means of the levels", means));
+        .with(Role::Reference, "π J/(8 F m ω)", dry)
+        .with(Role::Fitted, "line through the means", fitted.to_vec())
+        .with(Role::Points, "simulated trials", single)
+        .with(Role::FittedPoints, "means of the levels", means);
     chapter.figure(
         "figure_35",
         format!(

@@ -10,7 +10,7 @@ use crate::printed::{EQUATION_5_5, INSTANTANEOUS_SLOPE, MACHINE, TABLE_1};
 use crate::ring_down::{INTERVAL, motion, scenario, velocity_record, with_noise};
 use crate::windows::{WindowFit, Windows};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Panel, Role, label};
 
 /// White noise (m/s), displacement (m), and length (s) of the longest record.
 const NOISE: f64 = 5e-4;
@@ -297,9 +297,9 @@ fn figure(chapter: &mut Chapter, of: Of<'_>) -> Found<()> {
     let (monolithic, assembled, slipping) = (monolithic?, assembled?, slipping?);
     let panel = |x: &str, y: String, values: fn(&Windowed) -> Vec<(f64, f64)>| {
         Panel::new(x, y, 320.0)
-            .with(Layer::new(Role::Points, monolithic.machine.name(), values(monolithic)))
-            .with(Layer::new(Role::FittedPoints, assembled.machine.name(), values(assembled)))
-            .with(Layer::new(Role::ResidualPoints, slipping.machine.name(), values(slipping)))
+            .with(Role::Points, monolithic.machine.name(), values(monolithic))
+            .with(Role::FittedPoints, assembled.machine.name(), values(assembled))
+            .with(Role::ResidualPoints, slipping.machine.name(), values(slipping))
     };
     let damping = panel("", label("damping c", "N s/m"), Windowed::points);
     let frequency = panel("amplitude of the velocity V / (m/s)", label("f₀", "Hz"), Windowed::frequencies);

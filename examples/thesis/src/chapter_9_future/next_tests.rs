@@ -6,7 +6,7 @@ use fmm_record::Quantity;
 
 use crate::printed::{LOADS, MACHINE, TABLE_5};
 use crate::{Chapter, Criterion, Found, Target};
-use fmm_cli::figure::{Layer, Panel, Role, label};
+use fmm_cli::figure::{Panel, Role, label};
 
 /// White noise (m/s), samples a second, and length of a record (s).
 const NOISE: f64 = 5e-4;
@@ -90,11 +90,13 @@ fn figure(chapter: &mut Chapter, plan: &Plan, made: &[usize], best: &[(usize, us
     };
     for (load, role) in [(0, Role::Reference), (OF_TABLE_5, Role::Measured), (LOADS.len() - 1, Role::Fitted)] {
         let curve = points(&mut RELEASES.map(|release| place(load, release)))?;
-        panel = panel.with(Layer::new(role, format!("under {:.2} N", LOADS[load]), curve));
+        panel = panel.with(role, format!("under {:.2} N", LOADS[load]), curve);
     }
-    let panel = panel
-        .with(Layer::new(Role::Points, "the tests of Table 5", points(&mut made.iter().copied())?))
-        .with(Layer::new(Role::FittedPoints, "in the best six", points(&mut best.iter().map(|(test, _)| *test))?));
+    let panel = panel.with(Role::Points, "the tests of Table 5", points(&mut made.iter().copied())?).with(
+        Role::FittedPoints,
+        "in the best six",
+        points(&mut best.iter().map(|(test, _)| *test))?,
+    );
     chapter.figure(
         "next_tests",
         format!(

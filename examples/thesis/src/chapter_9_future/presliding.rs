@@ -11,7 +11,7 @@ use super::{candidates, side_by_side};
 use crate::printed::{LOADS, MACHINE};
 use crate::ring_down::{self, INTERVAL, Viscous, over_time, velocity_record, with_noise};
 use crate::{Chapter, Criterion, Found, Settings, Target};
-use fmm_cli::figure::{Layer, Panel, Role};
+use fmm_cli::figure::{Panel, Role};
 
 /// Normal load (N), displacement (m), white noise (m/s), and samples of a record.
 const LOAD: f64 = LOADS[1];
@@ -185,11 +185,11 @@ fn figure(chapter: &mut Chapter, truth: &Truth, comparison: &Comparison, own: us
     let decay = truth.decay()?;
     let decays = std::slice::from_ref(&decay);
     let record = decay.record();
-    let mut velocities = Panel::new("", "velocity / (mm/s)", 280.0).with(Layer::new(
+    let mut velocities = Panel::new("", "velocity / (mm/s)", 280.0).with(
         Role::Measured,
         "simulated record",
         over_time(record.values(), 1e3),
-    ));
+    );
     let mut residuals = Panel::new("time / s", "record − fit / (mm/s)", 240.0);
     for (law, role, found) in [
         ("dry friction", Role::Residual, &comparison.identifications()[0]),
@@ -197,8 +197,8 @@ fn figure(chapter: &mut Chapter, truth: &Truth, comparison: &Comparison, own: us
     ] {
         let model = found.model(decays, 0).ok_or("the fitted motion cannot be drawn")?;
         let left: Vec<f64> = record.values().iter().zip(&model).map(|(record, fit)| record - fit).collect();
-        velocities = velocities.with(Layer::new(role, format!("fit by {law}"), over_time(&model, 1e3)));
-        residuals = residuals.with(Layer::new(role, law, over_time(&left, 1e3)));
+        velocities = velocities.with(role, format!("fit by {law}"), over_time(&model, 1e3));
+        residuals = residuals.with(role, law, over_time(&left, 1e3));
     }
     chapter.figure(
         "presliding",

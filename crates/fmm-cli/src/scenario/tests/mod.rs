@@ -35,7 +35,7 @@ fn the_scenario_files_run_and_keep_their_energy() {
         let path = entry.unwrap().path();
         let name = path.display();
         let scenario = Simulation::read(&read(&path)).unwrap_or_else(|error| panic!("{name}: {error}"));
-        assert!(!scenario.title().is_empty() && !scenario.description().is_empty(), "{name} does not say what it is");
+        assert!(!scenario.title.is_empty() && !scenario.description.is_empty(), "{name} does not say what it is");
         let motion = scenario.run().unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(motion.events.len() > 3, "{name}: {} events", motion.events.len());
         let work = motion.energy.work.as_ref().expect("all of them record the work");
@@ -189,7 +189,7 @@ fn friction_along_the_motion_is_that_of_the_law() {
     // 8.604351 N times 0.228 + 0.261 exp(−2.852 · 0.2).
     let force = scenario.friction(-0.2, &[], false);
     assert!((force + 8.604_351 * 0.375_543).abs() < 1e-5, "{force} N");
-    assert_eq!((scenario.law(), scenario.belt()), ("berger", 0.0));
+    assert_eq!((scenario.law, scenario.belt), ("berger", 0.0));
     let level = scenario.run().unwrap().events[1].static_level;
     assert!((level - 8.604_351 * 0.489).abs() < 1e-12, "{level} N");
 
