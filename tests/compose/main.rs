@@ -3,6 +3,7 @@
 mod backbone;
 mod bad_input;
 mod brake;
+mod change;
 mod document;
 mod every_law;
 mod hammer;

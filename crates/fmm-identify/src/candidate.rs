@@ -31,6 +31,11 @@ impl Candidate {
         Self { law: Law::of::<F>(), terms: Terms::NONE }
     }
 
+    /// The candidate of a `law` as a value, with `terms` beside it.
+    pub(crate) const fn by(law: Law, terms: Terms) -> Self {
+        Self { law, terms }
+    }
+
     /// The same law with `terms` beside it.
     #[must_use]
     pub fn with(self, terms: Terms) -> Self {

@@ -134,8 +134,8 @@ pub use identification::{
     FittedMotion, Identification, Profile, Profiles, Validation, identify, identify_observed, identify_with,
 };
 pub use judgement::{
-    Comparison, Extension, FrictionOverLoad, LoadVerdict, NestedTest, ScoreTest, Search, compare, compare_observed,
-    search, search_observed,
+    Comparison, Extension, FrictionChange, FrictionOverLoad, LoadVerdict, NestedTest, ScoreTest, Search, compare,
+    compare_observed, search, search_observed,
 };
 pub use machine::{Known, Machine, Scale, Terms};
 #[cfg(feature = "sampler")]

@@ -52,6 +52,10 @@ pub(crate) struct Question {
     /// Standard uncertainty of the damping
     #[arg(long, value_name = "N S/M", requires = "damping", default_value_t = 0.0)]
     damping_u: f64,
+    /// Standard uncertainty of the change of the friction with each half cycle, relative to itself: how steady it is
+    /// known to be. Without it, a change is looked for, and what would not show is stated
+    #[arg(long, value_name = "RELATIVE")]
+    steady: Option<f64>,
     /// The normal load on the contact
     #[arg(long, value_name = "N")]
     normal_load: Option<f64>,
@@ -108,6 +112,9 @@ impl Question {
         }
         if let Some(load) = self.normal_load {
             machine = machine.with_normal_load(known("--normal-load", load, self.normal_load_u)?)?;
+        }
+        if let Some(steady) = self.steady {
+            machine = machine.with_steady_friction(steady)?;
         }
         if let Some(length) = self.pendulum {
             machine = machine.with_restoring(Restoring::sine(length)?);
@@ -204,6 +211,7 @@ impl Question {
                     ("--stiffness-u", Some(question.stiffness_u)),
                     ("--damping", question.damping),
                     ("--damping-u", Some(question.damping_u)),
+                    ("--steady", question.steady),
                 ]
             };
             let words = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |value| value.to_string());

@@ -330,6 +330,20 @@ impl Experiment {
         &self.peaks
     }
 
+    /// Mean time of the path slid, and the time at which the motion ends, after the beginning of the record (s).
+    ///
+    /// The path of a half cycle is in proportion to its peak.
+    pub(crate) fn slide_times(&self) -> (f64, f64) {
+        let (start, duration) = (self.record.start(), self.record.duration());
+        let path: f64 = self.peaks.iter().map(|(_, value)| value.abs()).sum();
+        let moment: f64 = self.peaks.iter().map(|(time, value)| (time - start) * value.abs()).sum();
+        let last = self.peaks.last().map(|(time, _)| time - start + self.guess.frequency().recip());
+        match last {
+            Some(last) if path > 0.0 && moment > 0.0 => (moment / path, last),
+            _ => (0.5 * duration, duration),
+        }
+    }
+
     /// Ranges of samples that are fitted; what lies between them is left out.
     pub fn kept(&self) -> &[Range<usize>] {
         &self.kept

@@ -22,6 +22,8 @@ pub enum Source {
     ForceGain,
     /// The time at which a pulse acts.
     Timing,
+    /// The steadiness of the friction that was declared.
+    Steadiness,
     /// Laws that the records do not exclude, and that would give another value.
     OtherLaws,
 }
@@ -37,6 +39,7 @@ impl fmt::Display for Source {
             Self::Gain => "gain of the record",
             Self::ForceGain => "gain of the force",
             Self::Timing => "time of the pulse",
+            Self::Steadiness => "steadiness of the friction",
             Self::OtherLaws => "laws that are not excluded",
         })
     }

@@ -58,6 +58,7 @@ impl<'a> Response<'a> {
         problem.quantities().oscillator == 1
             && problem.machine().restoring() == Restoring::Linear
             && !problem.has_spring()
+            && !problem.quantities().terms.has(Term::Change)
             && decay.drive().is_none()
             && decay.first_corner().is_none()
             && decay.load_factor() == 1.0

@@ -37,6 +37,8 @@ pub(crate) enum Begin<'a> {
     Anywhere,
     /// Near another fit.
     Near(&'a Near<'a>),
+    /// At the end of a fit to the same records by a law that lacks some of the parameters, which begin at zero.
+    Extended(&'a Fitted),
     /// At the end of a fit by the same law to the same records without filters in the sensors.
     Behind(&'a Fitted),
 }
@@ -85,6 +87,9 @@ pub(crate) fn fit_begun(
 ) -> Result<Fit, IdentifyError> {
     if let Some(forces) = problem.forces() {
         return fit_forces(problem, &forces, options, observer);
+    }
+    if let Begin::Extended(special) = begin {
+        return best_fit(problem, problem.name(), &[problem.extended(&special.fit)], options, observer);
     }
     if let Begin::Behind(plain) = begin {
         return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit.values())], options, observer);

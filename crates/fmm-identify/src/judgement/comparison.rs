@@ -10,6 +10,7 @@ use crate::experiment::{Experiment, Experiments, RecordSummary};
 use crate::finding::{Finding, Source};
 use crate::identification::Identification;
 use crate::identification::beside::closest;
+use crate::judgement::change::{FrictionChange, with_change};
 use crate::judgement::filtering::filtering_sensor;
 use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN};
 use crate::judgement::score_test::ScoreTest;
@@ -52,6 +53,8 @@ pub struct Comparison {
     pub(crate) judgement: Judgement,
     pub(crate) tests: Vec<NestedTest>,
     pub(crate) score_tests: Vec<ScoreTest>,
+    /// Change of the friction during the records that the preferred law leaves out.
+    pub(crate) change: Option<FrictionChange>,
     pub(crate) is_complete: bool,
     pub(crate) warnings: Vec<Warning>,
 }
@@ -101,6 +104,11 @@ pub fn compare_observed<'a>(
     options: &Options,
     mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
+    let allowed = |candidate: &Candidate| {
+        machine.steadiness().and_then(|_| with_change(candidate)).unwrap_or_else(|| candidate.clone())
+    };
+    let candidates: Vec<Candidate> = candidates.iter().map(allowed).collect();
+    let candidates = candidates.as_slice();
     let names: Vec<String> = candidates.iter().map(Candidate::name).collect();
     if let Some((_, twice)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
         return Err(IdentifyError::contradiction(format!("{twice} is given twice; leave one out")));
@@ -172,12 +180,18 @@ impl Comparison {
         warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
         warnings.extend(misled(&identifications, preferred));
         warnings.extend(sensor);
+        let change = FrictionChange::of(&identifications[preferred], decays);
+        if change.is_some_and(|change| change.is_shown()) {
+            warnings.push(Warning::FrictionChanges { law: identifications[preferred].law().to_owned() });
+            judgement.is_decided = false;
+        }
         Ok(Self {
             records: decays.iter().map(|decay| decay.summary().clone()).collect(),
             tests: tests(candidates, &identifications),
             identifications,
             judgement,
             score_tests: Vec::new(),
+            change,
             is_complete: true,
             warnings,
         })
@@ -354,6 +368,12 @@ impl Comparison {
     /// Score tests of extensions of Coulomb and viscous friction; empty unless a search made them.
     pub fn score_tests(&self) -> &[ScoreTest] {
         &self.score_tests
+    }
+
+    /// Change of the friction during the records that the preferred law leaves out; `None` where it has one, or the
+    /// records do not tell.
+    pub fn friction_change(&self) -> Option<FrictionChange> {
+        self.change
     }
 
     /// All laws of the search were tried; false if a time limit ended it.

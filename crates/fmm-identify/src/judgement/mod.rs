@@ -1,5 +1,6 @@
 //! The judgement: the fitted laws that the records allow, those that they exclude, and the preferred one.
 
+pub(crate) mod change;
 pub(crate) mod comparison;
 pub(crate) mod filtering;
 mod friction_over_load;
@@ -7,6 +8,7 @@ pub(crate) mod rules;
 pub(crate) mod score_test;
 mod search;
 
+pub use change::FrictionChange;
 pub use comparison::{Comparison, NestedTest, compare, compare_observed};
 pub use friction_over_load::{FrictionOverLoad, LoadVerdict};
 pub use score_test::{Extension, ScoreTest};

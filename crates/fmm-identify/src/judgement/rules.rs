@@ -76,6 +76,10 @@ pub(crate) const STEP: f64 = 0.01;
 /// Share of a change that no parameter can follow, below which it is rounding and curvature (1).
 pub(crate) const LEAST_CHANGE: f64 = 1e-6;
 
+/// Standard uncertainties above which a change of the friction during a record is no chance (1). Origin: one in 370 on
+/// two sides, as every record is asked.
+pub(crate) const SHOWN_CHANGE: f64 = 3.0;
+
 /// Order of the filter of a sensor that is tried (1). Origin: most sensors with a filter have one of second order.
 pub(crate) const FILTER_ORDER: usize = 2;
 

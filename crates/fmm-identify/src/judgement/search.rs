@@ -5,7 +5,9 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use fmm_fit::{Options, Progress};
-use fmm_friction::{CoulombViscous, FamilyVisitor, LawFamily, SearchRole, SearchStage, SearchTrial, catalogue};
+use fmm_friction::{
+    Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SearchRole, SearchStage, SearchTrial, catalogue,
+};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
@@ -13,6 +15,7 @@ use crate::experiment::Experiment;
 use crate::fit::stages::Near;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
+use crate::judgement::change::{FrictionChange, identify_with_change, with_change};
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::rules::{
@@ -263,6 +266,7 @@ where
     let run = Run { decays, ..run };
     let (mut tests, mut left_out) = run.score_tests(&found);
     let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
+    run.fit_changes(&mut found, decays, Found::simple)?;
     if found.asks_for_more(&tests) {
         let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
@@ -311,6 +315,10 @@ where
             )?;
             found.add(with_state);
         }
+    }
+    run.fit_changes(&mut found, decays, Found::preferred)?;
+    if machine.steadiness().is_some() {
+        run.allow_changes(&mut found, decays)?;
     }
     let dropped = found.drop_unfinished(&search.at(SearchStage::Simple));
     tests.retain(|test| test.uncertainty.is_finite());
@@ -484,6 +492,53 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
             }
         }
         Ok(found)
+    }
+
+    /// Adds a fit with friction that changes during the records, if the residuals of one of `found` show a change.
+    fn fit_changes(
+        &self,
+        found: &mut Found,
+        decays: &[Experiment],
+        base: fn(&Found) -> Option<&Identification>,
+    ) -> Result<(), IdentifyError> {
+        let change = |base: &Identification| FrictionChange::of(base, decays);
+        let is_shown = |base: &&Identification| change(base).is_some_and(|change| change.is_shown());
+        // Where the damping of the machine is known, a change of the friction may be all that is left of it.
+        let is_dry = |known: &&Identification| self.machine.damping().is_some() && known.family().name == Coulomb::NAME;
+        let dry = found.identifications.iter().find(is_dry);
+        let Some(base) = base(found).filter(is_shown).or(dry.filter(is_shown)) else { return Ok(()) };
+        // A law that falls with the speed may have taken a part of the change: the simple law is asked as well.
+        let bases: Vec<Identification> = std::iter::once(base).chain(found.simple()).cloned().collect();
+        bases.iter().try_for_each(|base| self.fit_change(found, decays, base))
+    }
+
+    /// Replaces the laws that are left by the same with friction that changes, where it is known how little it does.
+    fn allow_changes(&self, found: &mut Found, decays: &[Experiment]) -> Result<(), IdentifyError> {
+        let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return Ok(()) };
+        let left = (0..found.candidates.len()).filter(|place| judgement.is_left(*place));
+        let bases: Vec<Identification> = left.map(|place| found.identifications[place].clone()).collect();
+        for base in bases.iter().filter(|base| with_change(&Candidate::fitted(base)).is_some()) {
+            let place = found.identifications.iter().position(|known| known.law() == base.law());
+            if let Some(place) = place {
+                found.candidates.remove(place);
+                found.identifications.remove(place);
+            }
+            self.fit_change(found, decays, base)?;
+        }
+        Ok(())
+    }
+
+    fn fit_change(&self, found: &mut Found, decays: &[Experiment], base: &Identification) -> Result<(), IdentifyError> {
+        let name = base.law().to_owned();
+        let mut observe = |progress: &Progress<'_>| match self.observer.lock() {
+            Ok(mut observer) => observer(&name, progress),
+            Err(_) => ControlFlow::Break(()),
+        };
+        let changed = identify_with_change(base, self.machine, decays, self.options, &mut observe)?;
+        if let Some((candidate, identification)) = changed {
+            found.add(Found { candidates: vec![candidate], identifications: vec![identification], ..Found::default() });
+        }
+        Ok(())
     }
 
     fn score_tests(&self, found: &Found) -> (Vec<ScoreTest>, Vec<Warning>) {

@@ -25,6 +25,8 @@ pub(crate) struct Motion<D> {
     /// One value per parameter of the law.
     pub(crate) law: Vec<D>,
     pub(crate) normal_load: D,
+    /// Time (s) of a load that varies on a line up to it, and its factors at the beginning and then.
+    pub(crate) change: Option<(f64, [D; 2])>,
     /// Position and velocity at the beginning.
     pub(crate) initial: [D; 2],
     pub(crate) force: Option<Excitation<D>>,
@@ -36,6 +38,12 @@ impl<D: Scalar> Motion<D> {
     /// The scenario of it by family `F`.
     fn scenario<F: LawFamily>(&self) -> Result<Scenario<D, F::At<D>>, EvaluationError> {
         let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
+        let scenario = match self.change {
+            Some((end, factors)) => {
+                scenario.under_sampled_load(end, factors.map(|factor| self.normal_load * factor))?
+            }
+            None => scenario,
+        };
         let scenario = scenario.starting_at(self.initial[0], self.initial[1])?;
         Ok(match &self.force {
             Some(force) => scenario.driven_by(force.clone()),

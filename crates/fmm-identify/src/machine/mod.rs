@@ -33,6 +33,8 @@ pub struct Machine {
     scale: Scale,
     damping: Option<Known>,
     normal_load: Option<Known>,
+    /// Standard uncertainty of the change of the friction for each half cycle (1).
+    steadiness: Option<f64>,
     restoring: Restoring,
 }
 
@@ -55,7 +57,13 @@ pub enum Scale {
 impl Machine {
     /// Nothing is known: everything is found per unit mass.
     pub const fn per_unit_mass() -> Self {
-        Self { scale: Scale::PerUnitMass, damping: None, normal_load: None, restoring: Restoring::Linear }
+        Self {
+            scale: Scale::PerUnitMass,
+            damping: None,
+            normal_load: None,
+            steadiness: None,
+            restoring: Restoring::Linear,
+        }
     }
 
     /// A machine of known `mass` (kg).
@@ -93,7 +101,7 @@ impl Machine {
     /// Free vibrations alone do not tell them, as the thesis' appendix A1 supposes: the fit then reports the direction
     /// in which mass, stiffness, damping and friction may be scaled together.
     pub const fn unknown() -> Self {
-        Self { scale: Scale::Unknown, damping: None, normal_load: None, restoring: Restoring::Linear }
+        Self { scale: Scale::Unknown, damping: None, normal_load: None, steadiness: None, restoring: Restoring::Linear }
     }
 
     /// The same machine with a linear damping of its own that is known, for instance from a ring-down without the
@@ -114,6 +122,18 @@ impl Machine {
     pub fn with_normal_load(mut self, load: Known) -> Result<Self, ModelError> {
         ModelError::require_positive("normal load", load.value(), "N")?;
         self.normal_load = Some(load);
+        Ok(self)
+    }
+
+    /// The same machine with friction that is known to change by no more than this standard uncertainty for each half
+    /// cycle, relative to itself (1): each fit by a law of the sliding speed then has the term
+    /// [change](Terms::with_change), of which this is known, and its uncertainty is in that of the findings.
+    ///
+    /// # Errors
+    /// [`ModelError::NotPositive`] if it is zero or negative.
+    pub fn with_steady_friction(mut self, uncertainty: f64) -> Result<Self, ModelError> {
+        ModelError::require_positive("steadiness of the friction", uncertainty, "(for each half cycle)")?;
+        self.steadiness = Some(uncertainty);
         Ok(self)
     }
 
@@ -138,6 +158,11 @@ impl Machine {
     /// The machine's own damping, if it is known.
     pub const fn damping(&self) -> Option<Known> {
         self.damping
+    }
+
+    /// Standard uncertainty of the change of the friction for each half cycle (1), if it is known.
+    pub const fn steadiness(&self) -> Option<f64> {
+        self.steadiness
     }
 
     /// The normal load, if it is known.

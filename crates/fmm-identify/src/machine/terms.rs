@@ -9,8 +9,8 @@ use crate::law::naming::{LINEAR, Units};
 
 /// Terms that are fitted beside the law, and parameters that are fixed.
 ///
-/// Linear, quadratic and cubic damping belong to every experiment; damping with a free power and the terms of the
-/// spring to vibrations; zero, inertia, stiffness, gravity, asymmetry, load offset, channels and delay to a
+/// Linear, quadratic and cubic damping belong to every experiment; damping with a free power, the terms of the spring
+/// and a change of the friction during the record to vibrations; zero, inertia, stiffness, gravity, asymmetry, load offset, channels and delay to a
 /// [force along a motion](crate::ForceRecord):
 ///
 /// ```text
@@ -54,6 +54,8 @@ pub(crate) enum Term {
     /// The stiffness beyond the stop before it.
     StopRatio,
     Gap,
+    /// Change w of the friction during the record, relative to its mean over the path slid.
+    Change,
     /// Zero of the force, F₀.
     Zero,
     /// Inertia m v' of the mass between the force sensor and the contact.
@@ -76,7 +78,7 @@ pub(crate) enum Term {
 
 impl Term {
     /// All terms, in the order of their words in the name of a candidate.
-    pub(crate) const ALL: [Self; 19] = [
+    pub(crate) const ALL: [Self; 20] = [
         Self::LinearDamping,
         Self::QuadraticDamping,
         Self::CubicDamping,
@@ -87,6 +89,7 @@ impl Term {
         Self::Stop,
         Self::StopRatio,
         Self::Gap,
+        Self::Change,
         Self::Zero,
         Self::Inertia,
         Self::Stiffness,
@@ -109,6 +112,7 @@ impl Term {
             Self::QuinticSpring => Some("quintic spring"),
             Self::Stop => Some("stop"),
             Self::Gap => Some("gap"),
+            Self::Change => Some("change"),
             Self::Zero => Some("zero"),
             Self::Inertia => Some("inertia"),
             Self::Stiffness => Some("stiffness"),
@@ -154,7 +158,7 @@ impl Term {
 
     /// True for a term that a force along a motion has, and no vibration.
     const fn is_of_forces_alone(self) -> bool {
-        !self.is_damping() && !self.is_spring()
+        !self.is_damping() && !self.is_spring() && !matches!(self, Self::Change)
     }
 
     /// The power of the gain of a record to which its parameter is proportional; `exponent` is that of a power-law
@@ -200,6 +204,7 @@ impl Term {
             Self::Stop => ("stop_distance", "g", position.clone(), Bounds::POSITIVE),
             Self::StopRatio => ("stop_stiffness_ratio", "b", Unit::default(), Bounds::NOT_NEGATIVE),
             Self::Gap => ("gap", "g", position.clone(), Bounds::NOT_NEGATIVE),
+            Self::Change => (CHANGE, "w", Unit::of("1/s"), Bounds::UNBOUNDED),
             _ => return None,
         };
         Some(Parameter::named(name, symbol, unit.to_string()).bounded(bounds))
@@ -235,6 +240,12 @@ impl Term {
 
 /// Name of the quadratic damping among the parameters.
 pub(crate) const QUADRATIC: &str = "quadratic_damping_per_mass";
+
+/// Name of the change of the friction during the record among the parameters.
+pub(crate) const CHANGE: &str = "friction_change";
+
+/// Name of the same for each half cycle among the findings.
+pub(crate) const CHANGE_PER_HALF_CYCLE: &str = "friction_change_per_half_cycle";
 
 /// Exponents of a power-law damping. What grows more slowly than the speed is friction, of which there is a law
 /// `power_law`.
@@ -305,6 +316,14 @@ impl Terms {
         self.with(Term::QuinticSpring)
     }
 
+    /// The same with friction that changes during the record: N (1 + w (t − t₀)) in the place of N, with t₀ the mean time
+    /// of the path slid, so that the levels are those in the mean over the path. It changes all that the law gives; a
+    /// viscous part that shall stay is a linear damping beside the law. For laws of the sliding speed.
+    #[must_use]
+    pub fn with_change(self) -> Self {
+        self.with(Term::Change)
+    }
+
     /// The same with damping that may come out negative. A negative damper is no damper; it says that the law lacks
     /// friction that falls with speed.
     #[must_use]
@@ -343,6 +362,11 @@ impl Terms {
         if self.has_spring() {
             return Err(IdentifyError::contradiction(
                 "a spring that is not linear is a term of free vibrations; a force along a motion takes the term stiffness",
+            ));
+        }
+        if self.has(Term::Change) {
+            return Err(IdentifyError::contradiction(
+                "a friction that changes during the record is a term of vibrations; cut a force along a motion into parts",
             ));
         }
         if self.has(Term::PowerDamping) {

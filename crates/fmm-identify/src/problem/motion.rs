@@ -70,6 +70,10 @@ impl Table {
                 Some(drive.excitation(experiment.record().start(), delay, per)?)
             }
         };
+        let change = beside(Term::Change).map(|change| {
+            let (mean, end) = experiment.slide_times();
+            (end, [change * -mean + 1.0, change * (end - mean) + 1.0])
+        });
         let load = fitted(Place::NormalLoad).unwrap_or(D::from(1.0));
         Ok(Motion {
             oscillator: oscillator
@@ -77,6 +81,7 @@ impl Table {
                 .with_restoring(self.terms.spring(machine.restoring(), beside)?),
             law: self.family.values(&values[self.of_law()]),
             normal_load: load * experiment.load_factor(),
+            change,
             initial: [values[self.shared], values[self.shared + 1]],
             force,
             tolerance: None,

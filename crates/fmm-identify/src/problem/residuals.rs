@@ -269,7 +269,7 @@ impl Residuals for Problem<'_> {
 
 #[cfg(test)]
 mod tests {
-    use fmm_friction::{CoulombViscous, Stribeck};
+    use fmm_friction::{Coulomb, CoulombViscous, Stribeck};
     use fmm_model::Oscillator;
     use fmm_record::{Quantity, Record};
     use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -279,7 +279,7 @@ mod tests {
     use super::*;
     use crate::experiment::nuisance::DRIFT;
     use crate::experiment::{Experiment, Preparation, Sensor};
-    use crate::machine::Machine;
+    use crate::machine::{Machine, Terms};
 
     /// A velocity behind a filter whose corner is fitted, and a displacement that drifts, in more samples than are
     /// simulated at a time.
@@ -324,6 +324,17 @@ mod tests {
         let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
         assert!(problem.weights[1] != 1.0 && problem.quantities().directions(0) > DIRECTIONS);
         require_derivatives(&problem, &values(&problem));
+    }
+
+    #[test]
+    fn derivatives_of_friction_that_changes_are_those_of_differences() {
+        let decays = decays();
+        let terms = Terms::default().with_change().with_linear_damping();
+        let problem = Problem::with_terms::<Coulomb>(Machine::per_unit_mass(), terms, &decays).unwrap();
+        let mut p = values(&problem);
+        let change = problem.parameters().iter().position(|parameter| parameter.name() == "friction_change").unwrap();
+        p[change] = -0.2;
+        require_derivatives(&problem, &p);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_fit::Estimate;
+use fmm_fit::{Estimate, Fit};
 use fmm_friction::Role;
 use fmm_model::Parameter;
 
@@ -138,6 +138,12 @@ impl Problem<'_> {
         });
         let start: Vec<f64> = start.collect();
         self.clamped(&start)
+    }
+
+    /// The values of a `fit` by their names, with zeros for what it does not have.
+    pub(crate) fn extended(&self, fit: &Fit) -> Vec<f64> {
+        let value = |parameter: &Parameter| fit.estimate(parameter.name()).map_or(0.0, Estimate::value);
+        self.clamped(&self.parameters.iter().map(value).collect::<Vec<_>>())
     }
 
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into

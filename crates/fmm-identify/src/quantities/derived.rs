@@ -7,6 +7,7 @@ use crate::finding::Source;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Level, Units};
+use crate::machine::terms::{CHANGE_PER_HALF_CYCLE, Term};
 use crate::machine::{Machine, Scale};
 use crate::quantities::table::{Place, Table, mass_of_stiffness};
 
@@ -88,6 +89,10 @@ impl Inputs<'_> {
                 let value = variable(self.shared[index], index);
                 derived.push((parameter, value / mass_of_stiffness(D::from(1.0), natural_frequency)));
             }
+        }
+        if let Some(index) = self.table.shared(Place::Term(Term::Change)).filter(|_| self.table.is_per_mass()) {
+            let per_half_cycle = variable(self.shared[index], index) / (natural_frequency * 2.0);
+            derived.push((Parameter::new(CHANGE_PER_HALF_CYCLE, "w/2f₀", "1"), per_half_cycle));
         }
         // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
         let by_force = variable(self.gains[1], self.shared.len() + 3);

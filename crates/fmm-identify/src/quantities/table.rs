@@ -207,6 +207,23 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordi
     }
 }
 
+/// Relative changes of the friction for each second (1/s) that leave it positive in all experiments.
+fn bounds_of_change(experiments: &[Experiment]) -> Result<Bounds, IdentifyError> {
+    let times = || experiments.iter().map(Experiment::slide_times);
+    let before = times().map(|(mean, _)| mean).fold(0.0, f64::max);
+    let behind = times().map(|(mean, end)| end - mean).fold(0.0, f64::max);
+    Ok(Bounds::new(-behind.recip(), before.recip())?)
+}
+
+/// Knowledge of the relative change of the friction for each second (1/s) in a `record`.
+fn knowledge_of_change(machine: &Machine, record: &Experiment) -> Knowledge {
+    machine.steadiness().map_or(Knowledge::Free, |for_each_half_cycle| Knowledge::Prior {
+        value: 0.0,
+        uncertainty: for_each_half_cycle * 2.0 * record.guess().frequency(),
+        source: Source::Steadiness,
+    })
+}
+
 /// The rows of `experiment` number `record`; returns how many of them its motion depends on.
 fn of_experiment(
     record: usize,
@@ -289,6 +306,12 @@ impl Table {
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::two_dampings(family.name));
         }
+        if terms.has(Term::Change) && !family.is_of_speed() {
+            return Err(IdentifyError::contradiction(format!(
+                "{} has an internal state; friction that changes during the record takes a law of the sliding speed",
+                family.name
+            )));
+        }
         if let Some(contradiction) = terms.spring_contradiction(machine.restoring()) {
             return Err(IdentifyError::contradiction(contradiction));
         }
@@ -303,7 +326,12 @@ impl Table {
         oscillator(machine, experiments, coordinates, &mut rows);
         let oscillator = rows.rows.len();
         for (term, parameter) in terms.iter().zip(terms.parameters(&units.position)) {
-            rows.free(Place::Term(term), parameter);
+            if term == Term::Change {
+                let parameter = parameter.bounded(bounds_of_change(experiments)?);
+                rows.push(Place::Term(term), None, parameter, knowledge_of_change(machine, reference));
+            } else {
+                rows.free(Place::Term(term), parameter);
+            }
         }
         let law = rows.rows.len();
         for (number, parameter) in family.fitted().enumerate() {

@@ -9,6 +9,7 @@ use crate::finding::{Contribution, Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
 use crate::judgement::{Comparison, ScoreTest};
+use crate::machine::terms::CHANGE_PER_HALF_CYCLE;
 use crate::warning::write_warnings;
 
 impl Identification {
@@ -81,6 +82,10 @@ impl Comparison {
                 format!("{} = {}{interval}{reservation}", finding.parameter().name(), finding.quantity())
             })
             .collect();
+        let mut found = found;
+        let per_half_cycle = preferred.finding(CHANGE_PER_HALF_CYCLE);
+        found.extend(per_half_cycle.map(|change| format!("{CHANGE_PER_HALF_CYCLE} = {}", change.quantity())));
+        found.extend(self.friction_change().filter(|_| !main.is_empty()).map(|change| change.to_string()));
         let found =
             if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =

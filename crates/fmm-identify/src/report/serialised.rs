@@ -143,13 +143,13 @@ impl Serialize for ScoreTest {
     }
 }
 
-/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `p`
+/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `friction_change` (of the preferred law), `p`
 /// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
 /// are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 11)?;
+        let mut document = serializer.serialize_struct("Comparison", 12)?;
         document.serialize_field("preferred", self.preferred().law())?;
         document.serialize_field("decided", &self.is_decided())?;
         document.serialize_field("summary", &self.headline())?;
@@ -157,6 +157,7 @@ impl Serialize for Comparison {
         document.serialize_field("not_excluded", &left)?;
         document.serialize_field("complete", &self.is_complete())?;
         document.serialize_field("signs", self.score_tests())?;
+        document.serialize_field("friction_change", &self.friction_change())?;
         document.serialize_field("p", self.p_values())?;
         document.serialize_field("scores", self.scores())?;
         document.serialize_field("models", self.identifications())?;

@@ -181,6 +181,11 @@ pub enum Warning {
         /// Factor by which its residuals are larger (1).
         residuals: f64,
     },
+    /// The residuals ask for friction that changes during the record.
+    FrictionChanges {
+        /// Name of the law that has none.
+        law: String,
+    },
     /// The models are too close to prefer one.
     Undecided,
     /// A line of constant amplitude lies over the record and was fitted with it.
@@ -365,6 +370,11 @@ impl fmt::Display for Warning {
             Self::StaticLevelHeld { parameter } => {
                 write!(f, "{parameter} was held at the sliding level: a motion depends on it only in where it stops")
             }
+            Self::FrictionChanges { law } => write!(
+                f,
+                "{law} takes the friction as steady, but it changes during the record (wear, running in, warming, a load that varies): \
+                 fit the change (law + change; a viscous part that stays is + linear), give the damping of the machine, or use a shorter part"
+            ),
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::NotFitted { laws } => {
                 write!(f, "{laws}: tried, but not fitted to the end; so far other laws describe the record better")

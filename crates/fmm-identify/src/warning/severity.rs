@@ -33,6 +33,7 @@ impl Warning {
             | Self::NotConverged { .. }
             | Self::NegativeDamping { .. }
             | Self::KnowledgeContradicted { .. }
+            | Self::FrictionChanges { .. }
             | Self::Undecided
             | Self::Drift
             | Self::GrowingNoise { .. }

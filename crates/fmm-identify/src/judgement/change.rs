@@ -1,0 +1,150 @@
+//! Change of the friction during a record: the size that the residuals ask for, and the price of leaving it out.
+
+use std::fmt;
+
+use fmm_fit::Options;
+use fmm_friction::{Coulomb, CoulombViscous, LawFamily};
+
+use crate::candidate::Candidate;
+use crate::error::IdentifyError;
+use crate::experiment::{Experiment, reference};
+use crate::fit::stages::{Begin, Observer};
+use crate::identification::{Identification, identify_by};
+use crate::judgement::rules::{LEAST_CHANGE, SHOWN_CHANGE};
+use crate::machine::Machine;
+use crate::machine::terms::Term;
+use crate::problem::Problem;
+use crate::quantities::table::Place;
+
+/// Change of the friction during the records, for each half cycle, beside a law that has none.
+///
+/// Friction that falls during a record (wear, running in, warming) looks like less friction and more viscous damping:
+/// both follow the amplitude from cycle to cycle. Within a half cycle damping follows the speed and a change does not,
+/// which is all that tells them apart. The estimate is one step of least squares from the fit without a change:
+///
+/// ```text
+/// w = −dᵀr/dᵀd,     u² = dᵀΣd/(dᵀd)²,     d = (1 − J(JᵀJ)⁻¹Jᵀ) ∂m/∂w
+/// ```
+///
+/// with the residuals r, their noise Σ and the derivatives J of the fit, and m the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct FrictionChange {
+    /// w, relative change of the friction for each half cycle (1). Negative: it falls.
+    pub per_half_cycle: f64,
+    /// Standard uncertainty of w (1).
+    pub uncertainty: f64,
+    /// Relative error of the level of friction over the change that causes it (1): a change of w that is left out moves
+    /// the level by this times w of itself. Zero for a law whose level is zero.
+    pub price: f64,
+}
+
+impl FrictionChange {
+    /// The change that `found`, a fit to `experiments` by a law of the sliding speed without one, leaves in its
+    /// residuals; `None` for other laws, for driven motions, and where the parameters can follow it.
+    pub(crate) fn of(found: &Identification, experiments: &[Experiment]) -> Option<Self> {
+        let extended = with_change(&Candidate::fitted(found))?;
+        if experiments.iter().any(|experiment| experiment.drive().is_some()) || !found.residual_structure().is_noisy() {
+            return None;
+        }
+        let (machine, fit) = (*found.machine(), found.fit());
+        let base = Problem::of(found.family(), machine, found.terms().clone(), experiments).ok()?;
+        let problem = Problem::of(*extended.law(), machine, extended.terms().clone(), experiments).ok()?;
+        let index = problem.quantities().shared(Place::Term(Term::Change))?;
+        let mut direction = problem.columns(&problem.extended(fit), &[index]).ok()?.pop()?;
+        let tangent = found.tangent(&base)?;
+        let before: f64 = direction.iter().map(|d| d * d).sum();
+        let level = found.family().level().map(|level| base.quantities().law + level);
+        let relative = |level: usize| tangent.step(level, &direction) / fit.values()[level];
+        let moved = level.filter(|level| fit.values()[*level] > 0.0).map_or(0.0, relative);
+        tangent.take_out(&mut direction);
+        let square: f64 = direction.iter().map(|d| d * d).sum();
+        let noise = found.noise().product(&direction, &direction);
+        if !(square > LEAST_CHANGE * before && noise > 0.0) {
+            return None;
+        }
+        let product: f64 = direction.iter().zip(fit.residuals()).map(|(d, r)| d * r).sum();
+        // From a second to a half cycle.
+        let half_cycle = 0.5 / reference(experiments).guess().frequency();
+        Some(Self {
+            per_half_cycle: -product / square * half_cycle,
+            uncertainty: noise.sqrt() / square * half_cycle,
+            price: moved / half_cycle,
+        })
+    }
+
+    /// True if chance alone makes a change as large in one record of 370.
+    pub fn is_shown(&self) -> bool {
+        self.per_half_cycle.abs() > SHOWN_CHANGE * self.uncertainty
+    }
+
+    /// The largest change for each half cycle (1) that the records would not show.
+    pub fn largest_unseen(&self) -> f64 {
+        SHOWN_CHANGE * self.uncertainty
+    }
+}
+
+impl fmt::Display for FrictionChange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = |share: f64| 100.0 * share;
+        if self.is_shown() {
+            let word = if self.per_half_cycle < 0.0 { "falls" } else { "grows" };
+            let (change, u) = (percent(self.per_half_cycle.abs()), percent(self.uncertainty));
+            return write!(f, "its friction {word} by {change:.2} % ± {u:.2} % with each half cycle");
+        }
+        let (unseen, moved) = (self.largest_unseen(), self.largest_unseen() * self.price.abs());
+        if unseen.max(moved) > 1.0 {
+            return f.write_str("if the friction is steady (the record hardly tells)");
+        }
+        write!(
+            f,
+            "if the friction is steady (a change of {:.2} % with each half cycle would not show",
+            percent(unseen)
+        )?;
+        if moved > 0.0 {
+            write!(f, ", and would move its level by {:.1} %", percent(moved))?;
+        }
+        f.write_str(")")
+    }
+}
+
+impl Candidate {
+    /// The law and the terms of an identification.
+    pub(crate) fn fitted(found: &Identification) -> Self {
+        Self::by(found.family().with_held_breakaway(), found.terms().clone())
+    }
+}
+
+/// The `candidate` with friction that changes during the record, and its viscous part as damping of the machine, which
+/// does not; `None` for a law with internal state, one without friction and one that has the term.
+pub(crate) fn with_change(candidate: &Candidate) -> Option<Candidate> {
+    let terms = candidate.terms().clone();
+    if !candidate.law().is_of_speed() || candidate.law().level().is_none() || terms.has(Term::Change) {
+        return None;
+    }
+    let terms = terms.with_change();
+    Some(match candidate.law_name() {
+        CoulombViscous::NAME => Candidate::of::<Coulomb>().with(terms.with_linear_damping()),
+        _ => candidate.clone().with(terms),
+    })
+}
+
+/// The identification of `experiments` by the law of `found` with friction that changes, begun at the end of `found`;
+/// `None` where there is no such law.
+///
+/// # Errors
+/// Those of [`identify`](crate::identify).
+pub(crate) fn identify_with_change(
+    found: &Identification,
+    machine: &Machine,
+    experiments: &[Experiment],
+    options: &Options,
+    observer: &mut Observer<'_>,
+) -> Result<Option<(Candidate, Identification)>, IdentifyError> {
+    let Some(candidate) = with_change(&Candidate::fitted(found)) else { return Ok(None) };
+    let begin = Begin::Extended(found.fitted());
+    let (law, terms) = (*candidate.law(), candidate.terms());
+    let identification = identify_by(law, machine, terms, experiments.into(), begin, options, observer)?;
+    Ok(Some((candidate, identification)))
+}

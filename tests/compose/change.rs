@@ -1,0 +1,95 @@
+//! Friction that changes during the record: found where the record shows it, priced where it does not.
+
+use std::path::PathBuf;
+
+use fmm_identify::{Comparison, Experiment, Finding, Known, Machine, Preparation, Search, Source, search};
+use fmm_record::{Quantity, Reader};
+
+/// The search by the record called `name`, of which `tests/data/trials/SOURCES.md` states the truth.
+fn searched(name: &str, machine: &Machine) -> Comparison {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/trials").join(format!("{name}.csv"));
+    let is_velocity = ["control", "wear_0.2_percent", "load_over_time_9"].contains(&name);
+    let (quantity, unit) = if is_velocity { (Quantity::Velocity, "m/s") } else { (Quantity::Displacement, "m") };
+    let record = Reader::default().quantity(quantity).unit(unit).read(path).unwrap().record;
+    let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    search(machine, &[experiment], &Search::default()).unwrap()
+}
+
+fn machine(mass: f64, load: f64) -> Machine {
+    let machine = Machine::of_mass(Known::exact(mass).unwrap()).unwrap();
+    machine.with_normal_load(Known::exact(load).unwrap()).unwrap()
+}
+
+fn finding<'a>(comparison: &'a Comparison, name: &str) -> &'a Finding {
+    comparison.preferred().finding(name).unwrap_or_else(|| panic!("no {name}: {comparison}"))
+}
+
+/// Distance of a finding from the `truth`, in its standard uncertainties.
+fn distance(finding: &Finding, truth: f64) -> f64 {
+    (finding.value() - truth).abs() / finding.uncertainty().unwrap()
+}
+
+/// Without the term the level is 21 u (wear) and up to 84 u (load) off.
+#[test]
+fn a_change_is_named_and_the_level_is_that_in_the_mean_over_the_path() {
+    let wear = searched("wear_0.2_percent", &machine(2.0, 1.0659));
+    let change = finding(&wear, "friction_change_per_half_cycle");
+    assert!(change.value() < 0.0 && distance(change, -0.002) < 2.5, "{wear}");
+    // 0.25 at first, less 0.2 % with each of twenty half cycles of which the first are the longest.
+    assert!(distance(finding(&wear, "mu"), 0.2465) < 2.5, "{wear}");
+    for (name, mass, load, mu) in
+        [("load_over_time_5", 1.6927312, 0.528108619, 0.2623), ("load_over_time_9", 10.1948623, 6.46498619, 0.1102)]
+    {
+        let found = searched(name, &machine(mass, load));
+        assert!(finding(&found, "friction_change_per_half_cycle").value() > 0.0, "{found}");
+        assert!(distance(finding(&found, "mu"), mu) < 2.5, "{found}");
+        assert!(found.headline().contains("friction_change_per_half_cycle"), "{found}");
+    }
+}
+
+/// Eight half cycles do not tell wear from viscous damping: the headline states the assumption and its price, which
+/// covers the truth.
+#[test]
+fn a_change_that_does_not_show_has_its_price_in_the_headline() {
+    let found = searched("wear_1_percent", &machine(2.24477056, 2.32916536));
+    let change = found.friction_change().unwrap();
+    assert!(!change.is_shown() && change.largest_unseen() > 0.01, "{change:?}");
+    let mu = finding(&found, "mu");
+    assert!(distance(mu, 0.3133) > 5.0, "{found}");
+    assert!((mu.value() - 0.3133).abs() < mu.value() * (change.price * change.largest_unseen()).abs(), "{found}");
+    // The change that there is makes the error that there is.
+    let moved = mu.value() * (1.0 - change.price * -0.01);
+    assert!((moved / 0.3133 - 1.0).abs() < 0.03, "{moved}");
+    assert!(found.headline().contains("if the friction is steady"), "{}", found.headline());
+}
+
+/// The damping of the machine, known from a run without contact, tells them apart.
+#[test]
+fn a_known_damping_shows_the_change() {
+    let damping = Known::new(0.1262 * 2.24477056, 1e-4).unwrap();
+    let found = searched("wear_1_percent", &machine(2.24477056, 2.32916536).with_damping(damping).unwrap());
+    assert!(found.preferred().law().ends_with("+ change"), "{found}");
+    let change = finding(&found, "friction_change_per_half_cycle");
+    assert!(distance(change, -0.01) < 2.5 && change.uncertainty().unwrap() < 0.002, "{found}");
+    assert!(distance(finding(&found, "mu"), 0.3133) < 2.0, "{found}");
+}
+
+/// A statement of how steady the friction is enters the uncertainty, with a share of its own.
+#[test]
+fn declared_steadiness_is_in_the_uncertainty() {
+    let known = machine(2.24477056, 2.32916536).with_steady_friction(0.01).unwrap();
+    let found = searched("wear_1_percent", &known);
+    let mu = finding(&found, "mu");
+    assert!(mu.contributions().any(|part| part.source == Source::Steadiness && part.share > 0.2), "{found}");
+    assert!(distance(mu, 0.3133) < 2.0, "{found}");
+    assert!(found.friction_change().is_none());
+}
+
+/// Friction that is steady is taken for it.
+#[test]
+fn steady_friction_shows_no_change() {
+    let found = searched("control", &machine(11.8051577, 14.7136915));
+    let change = found.friction_change().unwrap();
+    assert!(!change.is_shown() && change.uncertainty < 1e-3, "{change:?}");
+    assert!(found.not_excluded().all(|law| !law.law().contains("change")), "{found}");
+}
