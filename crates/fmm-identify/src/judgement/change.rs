@@ -91,7 +91,10 @@ impl fmt::Display for FrictionChange {
         if self.is_shown() {
             let word = if self.per_half_cycle < 0.0 { "falls" } else { "grows" };
             let (change, u) = (percent(self.per_half_cycle.abs()), percent(self.uncertainty));
-            return write!(f, "its friction {word} by {change:.2} % ± {u:.2} % with each half cycle");
+            return write!(
+                f,
+                "its residuals ask for friction that {word} by {change:.2} % ± {u:.2} % with each half cycle"
+            );
         }
         let (unseen, moved) = (self.largest_unseen(), self.largest_unseen() * self.price.abs());
         if unseen.max(moved) > 1.0 {

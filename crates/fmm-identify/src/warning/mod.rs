@@ -372,8 +372,9 @@ impl fmt::Display for Warning {
             }
             Self::FrictionChanges { law } => write!(
                 f,
-                "{law} takes the friction as steady, but it changes during the record (wear, running in, warming, a load that varies): \
-                 fit the change (law + change; a viscous part that stays is + linear), give the damping of the machine, or use a shorter part"
+                "the residuals of {law} ask for friction that changes during the record (wear, running in, warming, a load that \
+                 varies), or for another law: fit the change (law + change, with + linear for a viscous part that stays), give the \
+                 damping of the machine, or use a shorter part"
             ),
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::NotFitted { laws } => {
