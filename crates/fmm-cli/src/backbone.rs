@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use crate::figure::{Cells, Panel, Role, drawn, label};
 use crate::input::Given;
-use crate::output::{Output, print};
+use crate::output::{Output, pair, print};
 use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
@@ -108,7 +108,6 @@ fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &
 }
 
 fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion) -> Value {
-    let pair = |estimated: Estimated| [estimated.value, estimated.uncertainty];
     let mode = |mode: &DecayMode| {
         json!({
             "frequency": mode.frequency,

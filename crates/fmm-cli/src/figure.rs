@@ -176,18 +176,15 @@ impl Panel {
         let all = || shown.iter();
         let (x_low, x_high) = range(all().map(|point| point.0));
         let (y_low, y_high) = range(all().map(|point| point.1));
-        let span = y_high - y_low;
-        styled(Layout::auto_from_plots(&self.plots()))
-            .with_x_label(self.x_label.as_str())
-            .with_y_label(self.y_label.as_str())
-            .with_x_axis_min(x_low - 0.015 * (x_high - x_low))
-            .with_x_axis_max(x_high + 0.015 * (x_high - x_low))
-            .with_x_tick_step(step(x_high - x_low, steps))
-            .with_force_margins(MARGINS.0, MARGINS.1)
-            .with_y_axis_min(y_low - 0.05 * span)
-            .with_y_axis_max(y_high + headroom * span)
-            .with_x_tick_format(ticks(x_high - x_low))
-            .with_y_tick_format(ticks((1.05 + headroom) * span))
+        let (width, height) = (x_high - x_low, y_high - y_low);
+        framed(
+            &self.plots(),
+            (&self.x_label, (x_low - 0.015 * width, x_high + 0.015 * width)),
+            (&self.y_label, (y_low - 0.05 * height, y_high + headroom * height)),
+        )
+        .with_x_tick_step(step(width, steps))
+        .with_x_tick_format(ticks(width))
+        .with_y_tick_format(ticks((1.05 + headroom) * height))
     }
 }
 
@@ -250,16 +247,9 @@ pub fn histogram(x_label: &str, name: &str, values: &[f64]) -> String {
         Plot::Histogram(Histogram::from_bins(edges, density).with_color(MEASURED).with_legend(name)),
         Layer { role: Role::Fitted, label: "normal density".to_owned(), points: normal }.plot(),
     ];
-    let layout = styled(Layout::auto_from_plots(&plots))
-        .with_x_label(x_label)
-        .with_y_label("density")
-        .with_x_axis_min(low)
-        .with_x_axis_max(high)
-        .with_y_axis_min(0.0)
-        .with_y_axis_max(top * (1.0 + HEADROOM))
-        .with_x_tick_format(ticks(high - low))
+    let layout = framed(&plots, (x_label, (low, high)), ("density", (0.0, top * (1.0 + HEADROOM))))
         .with_x_tick_step(step(high - low, STEPS))
-        .with_force_margins(MARGINS.0, MARGINS.1)
+        .with_x_tick_format(ticks(high - low))
         .with_y_tick_format(ticks(top));
     let grid = Grid::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]).with_keep_panel_legends();
     renumbered(&SvgBackend.render_scene(&grid.with_cell_size(0.7 * WIDTH, 380.0).render()))
@@ -284,8 +274,13 @@ fn renumbered(svg: &str) -> String {
     text
 }
 
-/// Fonts, frame and legend that all figures share.
-fn styled(mut layout: Layout) -> Layout {
+/// Fonts, frame and legend that all figures share, with the label and the range of each axis.
+fn framed(
+    plots: &[Plot],
+    (x_label, (x_low, x_high)): (&str, (f64, f64)),
+    (y_label, (y_low, y_high)): (&str, (f64, f64)),
+) -> Layout {
+    let mut layout = Layout::auto_from_plots(plots);
     let theme = Theme { font_family: Some("Helvetica, Arial, sans-serif".into()), ..Theme::minimal() };
     // The bar of shades that `kuva` adds to cells would lie on them, as all panels have the same margins.
     layout.show_colorbar = false;
@@ -297,6 +292,13 @@ fn styled(mut layout: Layout) -> Layout {
         .with_legend_position(kuva::plot::LegendPosition::InsideTopRight)
         .with_legend_box(false)
         .with_ticks(6)
+        .with_x_label(x_label)
+        .with_y_label(y_label)
+        .with_x_axis_min(x_low)
+        .with_x_axis_max(x_high)
+        .with_y_axis_min(y_low)
+        .with_y_axis_max(y_high)
+        .with_force_margins(MARGINS.0, MARGINS.1)
 }
 
 /// The smallest tick step of 1, 2 or 5 times a power of ten of which `span` has `most` at most.

@@ -21,14 +21,19 @@ pub(crate) fn text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
 }
 
-/// Content of a file, which is JSON if its name ends so, and TOML otherwise.
-pub(crate) fn document<T: DeserializeOwned>(path: &Path) -> Result<T, Box<dyn Error>> {
+/// Result of the content of a file, which is JSON if its name ends so, and TOML otherwise.
+pub(crate) fn document<F: DeserializeOwned, T>(
+    path: &Path,
+    of: impl FnOnce(F) -> Result<T, Box<dyn Error>>,
+) -> Result<T, Box<dyn Error>> {
     let text = text(path)?;
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
-        Ok(serde_json::from_str(&text).map_err(named(path))?)
+    let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    let file = if is_json {
+        serde_json::from_str(&text).map_err(named(path))?
     } else {
-        Ok(toml::from_str(&text).map_err(named(path))?)
-    }
+        toml::from_str(&text).map_err(named(path))?
+    };
+    Ok(of(file).map_err(named(path))?)
 }
 
 /// Creates a folder unless it exists.

@@ -70,30 +70,21 @@ fn measured(arguments: &Arguments, channel: &Column, quantity: Option<Quantity>)
     Ok(choice.read(file)?.record)
 }
 
-/// Drive of the machine, if there is one.
-fn drive(arguments: &Arguments) -> Result<Option<Drive>, Box<dyn Error>> {
-    let (channel, quantity) = match (&arguments.force, &arguments.base) {
-        (Some(channel), _) => (channel, Some(Quantity::Force)),
-        (None, Some(channel)) => (channel, None),
-        (None, None) => return Ok(None),
-    };
-    let record = measured(arguments, channel, quantity)?;
-    Ok(Some(if quantity.is_some() { Drive::force(&record)? } else { Drive::base(&record)? }))
-}
-
 /// The experiment of the record, with its drive and its sensor.
 fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation) -> Result<Experiment, Box<dyn Error>> {
-    let experiment = match (&arguments.impact, drive(arguments)?) {
-        (Some(channel), _) => {
-            let force = measured(arguments, channel, Some(Quantity::Force))?;
-            let trial = ImpactTrial::prepare(&force, record)?;
-            match arguments.mobility {
-                Some(_) => Experiment::mobility(&trial, arguments.mobility)?,
-                None => Experiment::impact(&trial)?,
-            }
+    let force = |channel: &Column| measured(arguments, channel, Some(Quantity::Force));
+    let experiment = if let Some(channel) = &arguments.impact {
+        let trial = ImpactTrial::prepare(&force(channel)?, record)?;
+        match arguments.mobility {
+            Some(_) => Experiment::mobility(&trial, arguments.mobility)?,
+            None => Experiment::impact(&trial)?,
         }
-        (None, Some(drive)) => Experiment::driven(record, drive, preparation)?,
-        (None, None) => Experiment::ring_down(record, preparation)?,
+    } else if let Some(channel) = &arguments.force {
+        Experiment::driven(record, Drive::force(&force(channel)?)?, preparation)?
+    } else if let Some(channel) = &arguments.base {
+        Experiment::driven(record, Drive::base(&measured(arguments, channel, None)?)?, preparation)?
+    } else {
+        Experiment::ring_down(record, preparation)?
     };
     arguments.question.seen(experiment)
 }

@@ -1,7 +1,6 @@
 //! Lists of laws and of file formats: `fmm laws` and `fmm formats`.
 
 use std::error::Error;
-use std::fmt;
 
 use serde_json::json;
 
@@ -9,24 +8,22 @@ use crate::output::{print, print_json};
 use crate::scenario;
 use crate::scenario::{Entry, Slot};
 
-/// The laws with their parameters.
-struct Laws;
-
-impl fmt::Display for Laws {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(f, "A parameter goes by its name or its symbol. With a normal load of 1 a coefficient is a force.")?;
-        for entry in scenario::laws() {
-            writeln!(f, "\n{}", entry.name)?;
-            for slot in (entry.slots)() {
-                let description = slot.description();
-                let mut others = slot.keys();
-                others.retain(|key| !description.contains(key.as_str()));
-                let others = if others.is_empty() { String::new() } else { format!(", also {}", others.join(", ")) };
-                writeln!(f, "    {description}{others}")?;
-            }
+/// The laws with their parameters, as text.
+fn text() -> String {
+    let mut lines = vec![
+        "A parameter goes by its name or its symbol. With a normal load of 1 a coefficient is a force.".to_owned(),
+    ];
+    for entry in scenario::laws() {
+        lines.push(format!("\n{}", entry.name));
+        for slot in (entry.slots)() {
+            let description = slot.description();
+            let mut others = slot.keys();
+            others.retain(|key| !description.contains(key.as_str()));
+            let others = if others.is_empty() { String::new() } else { format!(", also {}", others.join(", ")) };
+            lines.push(format!("    {description}{others}"));
         }
-        Ok(())
     }
+    lines.join("\n")
 }
 
 /// The laws as a list of names and parameters.
@@ -43,10 +40,7 @@ fn document() -> serde_json::Value {
 
 /// Lists the laws with their parameters.
 pub(crate) fn laws(json: bool) -> Result<(), Box<dyn Error>> {
-    if json {
-        return print_json(&document());
-    }
-    print(Laws.to_string().trim_end())
+    if json { print_json(&document()) } else { print(text()) }
 }
 
 /// Names of the formats and what they are.

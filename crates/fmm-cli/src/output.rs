@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use fmm_model::Estimated;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -53,6 +54,11 @@ pub(crate) fn print(result: impl Display) -> Result<(), Box<dyn Error>> {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         written => Ok(written?),
     }
+}
+
+/// Value and standard uncertainty for a document.
+pub(crate) fn pair(estimated: Estimated) -> [f64; 2] {
+    [estimated.value, estimated.uncertainty]
 }
 
 /// Prints a document of JSON.

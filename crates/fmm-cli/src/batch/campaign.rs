@@ -26,7 +26,7 @@ pub(crate) struct Campaign {
 }
 
 /// One record of a campaign.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Entry {
     pub(crate) file: PathBuf,
     /// Options of `fmm identify` for it alone.
@@ -62,7 +62,7 @@ impl Campaign {
         if files.is_empty() {
             return Err("there is no record in these folders".into());
         }
-        let entry = |file| Entry { file, options: Vec::new(), description: BTreeMap::new() };
+        let entry = |file| Entry { file, ..Entry::default() };
         Ok(Self { options, group: None, sheet: None, entries: files.into_iter().map(entry).collect() })
     }
 
@@ -81,7 +81,7 @@ impl Campaign {
         }
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let entry = |cells: &Vec<String>| {
-            let mut entry = Entry { file: PathBuf::new(), options: Vec::new(), description: BTreeMap::new() };
+            let mut entry = Entry::default();
             for (column, cell) in manifest.columns.iter().zip(cells) {
                 if column == FILE {
                     entry.file = folder.join(cell);

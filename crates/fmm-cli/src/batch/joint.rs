@@ -57,7 +57,7 @@ impl Together {
             law: found.law().to_owned(),
             records: experiments.len(),
             findings: told(found),
-            reference_load: question.normal_load().filter(|_| loads_differ),
+            reference_load: question.normal_load.filter(|_| loads_differ),
             rms_residual: found.rms_residual(),
             unit: experiments[0].record().unit().to_owned(),
             warnings: comparison.warnings().iter().map(ToString::to_string).collect(),

@@ -31,7 +31,7 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
         statements(summary),
         together(summary),
         pictures.collect::<String>(),
-        joint(summary),
+        summary.joint.as_ref().map_or_else(String::new, |_| section("Joint fit", &paragraphs(joint_lines(summary)))),
         dependences(summary),
         sheet(summary),
         records(campaign, rows),
@@ -116,14 +116,6 @@ fn records(campaign: &Campaign, rows: &[Row]) -> String {
     headings.push("warnings".to_owned());
     let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
     table("records", &headings, rows.iter().map(row))
-}
-
-/// The joint fit in sentences, if it was asked for.
-fn joint(summary: &Summary) -> String {
-    if summary.joint.is_none() {
-        return String::new();
-    }
-    section("Joint fit", &paragraphs(joint_lines(summary)))
 }
 
 /// Friction against what differs between the records.

@@ -1,13 +1,10 @@
 //! The file of a measurement: inputs, correlations, and the results as formulas.
 
 use std::error::Error;
-use std::path::Path;
 
 use fmm_uq::{Distribution, Formula, Input, Inputs, Observations, Scalar, UncertaintyError};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
-
-use crate::files;
 
 /// Inputs and what follows from them.
 #[derive(Debug)]
@@ -26,7 +23,7 @@ pub(super) struct Wanted {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(super) struct File {
     input: Vec<InputEntry>,
     #[serde(default)]
     correlation: Vec<Correlation>,
@@ -82,11 +79,6 @@ fn two<'de, T: Deserialize<'de>, D: Deserializer<'de>>(needed: &str, deserialize
 }
 
 impl Measurement {
-    /// Reads the file, which is JSON if its name ends so, and TOML otherwise.
-    pub(super) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
-        Ok(Self::of(files::document(path)?).map_err(files::named(path))?)
-    }
-
     /// The results for these values of the inputs.
     pub(super) fn values<D: Scalar>(&self, inputs: &[D]) -> Result<Vec<D>, UncertaintyError> {
         self.results.iter().map(|result| result.formula.evaluate(inputs)).collect()
@@ -102,7 +94,8 @@ impl Measurement {
         Self::of(serde_json::from_str(text)?)
     }
 
-    fn of(file: File) -> Result<Self, Box<dyn Error>> {
+    /// The measurement of a file.
+    pub(super) fn of(file: File) -> Result<Self, Box<dyn Error>> {
         let inputs = file.input.into_iter().map(InputEntry::input).collect::<Result<Vec<_>, _>>()?;
         let inputs = Inputs::new(inputs)?;
         let correlations = file.correlation.iter().map(|Correlation { between: [first, second], coefficient }| {

@@ -17,6 +17,7 @@ use fmm_uq::{
 };
 use serde::Serialize;
 
+use crate::files;
 use crate::output::{print, print_json};
 use file::{Correlation, Measurement};
 
@@ -69,7 +70,7 @@ struct Answers {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let measurement = Measurement::read(&arguments.file)?;
+    let measurement = files::document(&arguments.file, Measurement::of)?;
     let answers = answers(&measurement, arguments.level, (arguments.trials, arguments.seed))?;
     if arguments.json { print_json(&answers) } else { print(text(&answers).trim_end()) }
 }
@@ -286,7 +287,7 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
                 )
             };
             std::fs::write(&path, file).unwrap();
-            let read = Measurement::read(&path);
+            let read = files::document(&path, Measurement::of);
             std::fs::remove_file(&path).unwrap();
             read.unwrap().inputs.as_slice()[0].standard_uncertainty()
         };

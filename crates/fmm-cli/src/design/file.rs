@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::path::Path;
 
 use fmm_identify::{Aim, Candidate, Guess, Machine, PlannedTest};
 use fmm_model::{Oscillator, Rounded};
@@ -10,7 +9,6 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
 use super::candidates::{Amount, Candidates, OfSensor};
-use crate::files;
 use crate::scenario::{Entries, Field, given_twice, laws};
 
 /// Content of a plan.
@@ -107,17 +105,13 @@ impl Choose {
 }
 
 impl Wanted {
-    /// Reads the file, which is JSON if its name ends so, and TOML otherwise.
-    pub(super) fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
-        Ok(Self::of(files::document(path)?).map_err(files::named(path))?)
-    }
-
     #[cfg(test)]
     pub(super) fn of_toml(text: &str) -> Result<Self, Box<dyn Error>> {
         Self::of(toml::from_str(text)?)
     }
 
-    fn of(file: File) -> Result<Self, Box<dyn Error>> {
+    /// The plan of a file.
+    pub(super) fn of(file: File) -> Result<Self, Box<dyn Error>> {
         if file.choose.tests.is_some() == file.choose.budget.is_some() {
             return Err("[choose] needs tests, their number, or budget, what they may cost: one of the two".into());
         }

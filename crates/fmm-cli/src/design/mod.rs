@@ -72,7 +72,7 @@ struct Answer {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let answer = answer(Wanted::read(&arguments.file)?).map_err(files::named(&arguments.file))?;
+    let answer = files::document(&arguments.file, |file| answer(Wanted::of(file)?))?;
     arguments.output.draw("design.svg", || Ok(figures::picture(&answer).into_iter().collect()))?;
     if arguments.output.json { print_json(&answer) } else { print(text(&answer).trim_end()) }
 }

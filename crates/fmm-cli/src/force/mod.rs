@@ -13,11 +13,9 @@ use std::path::{Path, PathBuf};
 use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
 use crate::input::Held;
-use crate::output::{Output, print, print_json};
+use crate::output::{Output, pair, print, print_json};
 use clap::Args;
-use fmm_identify::{
-    Candidate, Estimated, ForceLoop, ForceRecord, Identification, Machine, Onset, SpeedBin, Validation, compare,
-};
+use fmm_identify::{Candidate, ForceLoop, ForceRecord, Identification, Machine, Onset, SpeedBin, Validation, compare};
 use serde_json::{Value, json};
 use source::Source;
 
@@ -144,10 +142,6 @@ fn without_a_law(record: &ForceRecord) -> Vec<String> {
         ));
     }
     lines
-}
-
-fn pair(estimated: Estimated) -> [f64; 2] {
-    [estimated.value, estimated.uncertainty]
 }
 
 fn speeds(record: &ForceRecord) -> Value {

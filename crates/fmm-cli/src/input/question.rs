@@ -58,7 +58,7 @@ pub(crate) struct Question {
     steady: Option<f64>,
     /// The normal load on the contact
     #[arg(long, value_name = "N")]
-    normal_load: Option<f64>,
+    pub(crate) normal_load: Option<f64>,
     /// Standard uncertainty of the normal load
     #[arg(long, value_name = "N", requires = "normal_load", default_value_t = 0.0)]
     normal_load_u: f64,
@@ -177,11 +177,6 @@ impl Question {
         }
         let named = Self { law: vec![law.replace(" of any sign", " + any sign")], ..self.clone() };
         named.candidates()?.pop().ok_or_else(|| format!("there is no law called {law}").into())
-    }
-
-    /// The normal load (N).
-    pub(crate) fn normal_load(&self) -> Option<f64> {
-        self.normal_load
     }
 
     /// Inputs of the machine with an uncertainty: source, value and standard uncertainty in their units.

@@ -105,17 +105,12 @@ fn made(given: &Given, make: impl FnOnce(&[f64]) -> Result<Contact, LawError>) -
     Ok(make(&given.numbers()?).map_err(|error| format!("the law {}: {error}", given.law))?)
 }
 
-/// Names of all laws.
-fn names() -> String {
-    laws().iter().map(|entry| entry.name).collect::<Vec<_>>().join(", ")
-}
-
 /// The law of an object `{name: {parameter: value, …}}`, with its name.
 ///
 /// # Errors
 /// If there is no such law, or its parameters are not what it needs.
 pub(crate) fn contact(law: Entries) -> Result<(&'static str, Contact), Box<dyn Error>> {
-    let known = || format!("the laws are {}", names());
+    let known = || format!("the laws are {}", laws().iter().map(|entry| entry.name).collect::<Vec<_>>().join(", "));
     let Ok([(name, Field::Object(parameters))]) = <[_; 1]>::try_from(law.0) else {
         let example = "{\"coulomb\": {\"mu\": 0.2}}";
         return Err(format!("a law is an object with one key, its name, such as {example}; {}", known()).into());

@@ -4,7 +4,10 @@ use std::rc::Rc;
 
 use fmm_friction::{BristleLaw, LawVisitor, PiecewiseLinearLaw, Regime, SlidingLaw};
 use fmm_model::Oscillator;
-use fmm_sim::{Engine, Exact, Excitation, Sampling, Scenario, SimulationError, State, Trajectory};
+use fmm_sim::{
+    Bristle, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, SimulationError, State, Thesis,
+    Trajectory,
+};
 
 use super::EngineName;
 use super::engine::Choice;
@@ -27,8 +30,8 @@ impl Setting {
     }
 }
 
-/// The motion by the chosen engine; none if it does not take the law.
-type Simulate = dyn Fn(&Setting, Choice, &Sampling) -> Result<Option<Trajectory>, SimulationError>;
+/// The motion by the chosen engine, which must be one that takes the law.
+type Simulate = dyn Fn(&Setting, Choice, &Sampling) -> Result<Trajectory, SimulationError>;
 
 /// Friction coefficient (1) with its sign by velocity (m/s) relative to the counterface, internal states, and whether
 /// the speed falls.
@@ -63,10 +66,19 @@ impl<L: Clone + 'static> LawVisitor<f64, L> for Make<L> {
         let (simulated, asked) = (law.clone(), law.clone());
         Contact {
             engines: if law.depends_on_acceleration() { &engines[..3] } else { engines },
-            simulate: Box::new(move |setting, choice, sampling| {
-                choice.sliding(&setting.with(simulated.clone())?, sampling)
+            simulate: Box::new(move |setting, Choice { engine, tolerance }, sampling| {
+                let scenario: &Scenario<f64, dyn SlidingLaw<f64>> = &setting.with(simulated.clone())?;
+                match engine {
+                    EngineName::Thesis => Thesis::default().run(scenario, sampling),
+                    EngineName::Moreau => Moreau::default().run(scenario, sampling),
+                    _ => tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?.run(scenario, sampling),
+                }
             }),
-            coefficient: Box::new(move |velocity, _, losing| asked.signed_coefficient(velocity, losing)),
+            coefficient: Box::new(move |velocity, _, losing| {
+                let speed = velocity.abs();
+                let level = if losing { asked.coefficient_losing_speed(speed) } else { asked.coefficient(speed) };
+                if velocity == 0.0 { 0.0 } else { level * velocity.signum() }
+            }),
             sliding: Some(law),
         }
     }
@@ -82,8 +94,8 @@ impl<L: Clone + 'static> LawVisitor<f64, L> for Make<L> {
         Contact {
             engines: &engines[..=of_speed.len()],
             simulate: Box::new(move |setting, choice, sampling| match choice.engine {
-                EngineName::Auto => automatic(&setting.with(law.clone())?, sampling).map(Some),
-                EngineName::Exact => Exact.run(&setting.with(law.clone())?, sampling).map(Some),
+                EngineName::Auto => automatic(&setting.with(law.clone())?, sampling),
+                EngineName::Exact => Exact.run(&setting.with(law.clone())?, sampling),
                 _ => simulate(setting, choice, sampling),
             }),
             coefficient,
@@ -99,12 +111,11 @@ impl<L: Clone + 'static> LawVisitor<f64, L> for Make<L> {
         let asked = law.clone();
         Contact {
             engines: &[EngineName::Auto, EngineName::Bristle],
-            simulate: Box::new(move |setting, choice, sampling| {
+            simulate: Box::new(move |setting, Choice { engine, tolerance }, sampling| {
                 let scenario = setting.with(law.clone())?;
-                match choice.engine {
-                    EngineName::Auto => automatic(&scenario, sampling).map(Some),
-                    EngineName::Bristle => choice.bristle(&scenario, sampling).map(Some),
-                    _ => Ok(None),
+                match engine {
+                    EngineName::Auto => automatic(&scenario, sampling),
+                    _ => tolerance.map_or_else(|| Ok(Bristle::default()), Bristle::new)?.run(&scenario, sampling),
                 }
             }),
             coefficient: Box::new(move |velocity, states, _| {
@@ -126,7 +137,7 @@ impl<L: Clone + 'static> LawVisitor<f64, L> for Make<L> {
         Contact {
             engines: &[EngineName::Auto, EngineName::Exact, EngineName::Bristle],
             simulate: Box::new(move |setting, choice, sampling| match choice.engine {
-                EngineName::Exact => Exact.run(&setting.with(law.clone())?, sampling).map(Some),
+                EngineName::Exact => Exact.run(&setting.with(law.clone())?, sampling),
                 _ => simulate(setting, choice, sampling),
             }),
             coefficient,
@@ -138,15 +149,6 @@ impl<L: Clone + 'static> LawVisitor<f64, L> for Make<L> {
 /// A law of the sliding speed of any type.
 #[derive(Clone)]
 pub(crate) struct AnySliding(Rc<dyn SlidingLaw<f64>>);
-
-impl AnySliding {
-    /// The coefficient (1) with its sign at a velocity (m/s) of either sign.
-    fn signed_coefficient(&self, velocity: f64, losing: bool) -> f64 {
-        let speed = velocity.abs();
-        let coefficient = if losing { self.0.coefficient_losing_speed(speed) } else { self.0.coefficient(speed) };
-        if velocity == 0.0 { 0.0 } else { coefficient * velocity.signum() }
-    }
-}
 
 impl SlidingLaw<f64> for AnySliding {
     fn coefficient(&self, speed: f64) -> f64 {

@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use fmm_friction::{BristleLaw, SlidingLaw};
-use fmm_sim::{Bristle, Engine, Moreau, RungeKutta, Sampling, Scenario, SimulationError, Thesis, Trajectory};
 use serde::Deserialize;
 
 /// The engines that a scenario can name.
@@ -44,32 +42,4 @@ pub(crate) struct Choice {
     pub(crate) engine: EngineName,
     /// Relative tolerance (1); none for the engine's own.
     pub(crate) tolerance: Option<f64>,
-}
-
-impl Choice {
-    /// The bristle engine at the tolerance chosen.
-    pub(crate) fn bristle<L: BristleLaw<f64>>(
-        self,
-        scenario: &Scenario<f64, L>,
-        sampling: &Sampling,
-    ) -> Result<Trajectory, SimulationError> {
-        self.tolerance.map_or_else(|| Ok(Bristle::default()), Bristle::new)?.run(scenario, sampling)
-    }
-
-    /// An engine for laws of the sliding speed alone; `None` if the one chosen is not.
-    pub(crate) fn sliding(
-        self,
-        scenario: &Scenario<f64, dyn SlidingLaw<f64> + '_>,
-        sampling: &Sampling,
-    ) -> Result<Option<Trajectory>, SimulationError> {
-        match self.engine {
-            EngineName::Auto | EngineName::RungeKutta => {
-                self.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?.run(scenario, sampling)
-            }
-            EngineName::Thesis => Thesis::default().run(scenario, sampling),
-            EngineName::Moreau => Moreau::default().run(scenario, sampling),
-            EngineName::Exact | EngineName::Bristle => return Ok(None),
-        }
-        .map(Some)
-    }
 }

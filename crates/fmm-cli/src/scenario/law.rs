@@ -13,10 +13,7 @@ pub(crate) struct Given {
 impl Given {
     /// Sorts `entries` into `slots`.
     pub(crate) fn sort(law: &'static str, slots: Vec<Slot>, entries: Entries) -> Result<Self, String> {
-        let known = || {
-            let texts: Vec<String> = slots.iter().map(Slot::description).collect();
-            texts.join(", ")
-        };
+        let known = || slots.iter().map(Slot::description).collect::<Vec<_>>().join(", ");
         let mut fields: Vec<Option<Field>> = slots.iter().map(|slot| slot.default.map(Field::Number)).collect();
         let mut seen = vec![false; slots.len()];
         for (key, field) in entries.0 {

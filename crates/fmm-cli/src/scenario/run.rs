@@ -38,7 +38,8 @@ impl Simulation {
         let choice = Choice { engine: file.engine, tolerance: file.tolerance };
         let engine = choice.engine;
         if !contact.engines.contains(&engine) {
-            let possible = possible(&contact);
+            let possible: Vec<String> = contact.engines.iter().map(ToString::to_string).collect();
+            let possible = possible.join(", ");
             return Err(if has_law {
                 format!("the engine {engine} cannot take the law {law}; its engines are {possible}")
             } else {
@@ -79,9 +80,7 @@ impl Simulation {
     /// `SimulationError` if the engine has no answer.
     pub(crate) fn run_at(&self, plan: &Plan) -> Result<Motion, Box<dyn Error>> {
         let sampling = plan.sampling.clone().with_work();
-        let motion = (self.contact.simulate)(&self.setting, self.choice, &sampling)?;
-        let (law, engine) = (self.law, self.choice.engine);
-        let trajectory = motion.ok_or_else(|| format!("the engine {engine} cannot take the law {law}"))?;
+        let trajectory = (self.contact.simulate)(&self.setting, self.choice, &sampling)?;
         Ok(Motion::new(&trajectory, plan, &self.setting))
     }
 
@@ -104,9 +103,4 @@ impl Simulation {
 fn frictionless() -> Entries {
     let nothing = Entries(vec![("viscous".to_owned(), Field::Number(0.0))]);
     Entries(vec![("viscous".to_owned(), Field::Object(nothing))])
-}
-
-/// Names of the engines that take the law.
-fn possible(contact: &Contact) -> String {
-    contact.engines.iter().map(EngineName::to_string).collect::<Vec<_>>().join(", ")
 }

@@ -6,7 +6,7 @@
 mod figures;
 
 use std::error::Error;
-use std::fmt;
+use std::fmt::{self, Write as _};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if arguments.output.json {
         print(serde_json::to_string(&motion)?)
     } else {
-        print(Report { scenario: &scenario, motion: &motion }.to_string().trim_end())
+        print(text(&scenario, &motion)?.trim_end())
     }
 }
 
@@ -44,69 +44,63 @@ const MOST_EVENTS: usize = 60;
 pub(crate) const HELP: &str = include_str!("help.txt");
 
 /// A motion for the eye.
-struct Report<'a> {
-    scenario: &'a Simulation,
-    motion: &'a Motion,
-}
-
-impl fmt::Display for Report<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { scenario, motion } = self;
-        for line in [&scenario.title, &scenario.description] {
-            if !line.is_empty() {
-                writeln!(f, "{line}")?;
-            }
+fn text(scenario: &Simulation, motion: &Motion) -> Result<String, fmt::Error> {
+    let mut text = String::new();
+    for line in [&scenario.title, &scenario.description] {
+        if !line.is_empty() {
+            writeln!(text, "{line}")?;
         }
-        writeln!(f, "law {}, engine {}\n", scenario.law, motion.engine)?;
-
-        let [position, velocity, _] = scenario.units();
-        let head = [label("x", position), label("v", velocity)];
-        writeln!(f, "{:>16}  {:13} {:>15} {:>15}  {:10} {:>10}", "t / s", "event", head[0], head[1], "next", "margin")?;
-        for event in motion.events.iter().take(MOST_EVENTS) {
-            let next = event.phase.map_or_else(|| event.next.to_owned(), |phase| format!("{} {phase}", event.next));
-            // Only where the velocity is zero is anything decided, and neither bristles nor a contact without a level
-            // decide.
-            let decided = motion.samples.z.is_empty()
-                && matches!(event.kind.as_str(), "zero_velocity" | "breakaway+" | "breakaway-");
-            let margin =
-                if decided && event.margin.is_finite() { format!("{:+.2e}", event.margin) } else { "-".to_owned() };
-            writeln!(
-                f,
-                "{:16.12}  {:13} {:+15.8e} {:+15.8e}  {next:10} {margin:>10}",
-                event.t, event.kind, event.x, event.v
-            )?;
-        }
-        if let Some(more) = motion.events.len().checked_sub(MOST_EVENTS).filter(|more| *more > 0) {
-            writeln!(f, "… and {more} more")?;
-        }
-
-        let (samples, energy) = (&motion.samples, &motion.energy);
-        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
-        writeln!(f, "\nenergy at {} s (J)", last(&samples.t))?;
-        let line = |f: &mut fmt::Formatter, name, values: &[f64]| writeln!(f, "{name:>22} {:+.10e}", last(values));
-        line(f, "kinetic", &energy.kinetic)?;
-        line(f, "potential", &energy.potential)?;
-        match &energy.work {
-            Some(work) => {
-                line(f, "lost to friction", &work.friction)?;
-                line(f, "lost to damping", &work.viscous)?;
-                line(f, "brought from outside", &work.external)?;
-                line(f, "balance", &work.balance)?;
-            }
-            None => writeln!(f, "{:>22} not kept by this engine", "work")?,
-        }
-
-        let count = samples.t.len();
-        let first = samples.t.first().copied().unwrap_or(0.0);
-        writeln!(f, "\n{count} samples from {first} s to {} s", last(&samples.t))?;
-        for (name, values, unit) in [("position", &samples.x, position), ("velocity", &samples.v, velocity)] {
-            let (low, high) = ends(values.iter().copied());
-            writeln!(f, "{name:>22} {low:+.6e} to {high:+.6e} {unit}")?;
-        }
-        for (index, values) in samples.z.iter().enumerate() {
-            let (low, high) = ends(values.iter().copied());
-            writeln!(f, "{:>22} {low:+.6e} to {high:+.6e}", format!("state z{index}"))?;
-        }
-        Ok(())
     }
+    writeln!(text, "law {}, engine {}\n", scenario.law, motion.engine)?;
+
+    let [position, velocity, _] = scenario.units();
+    let head = [label("x", position), label("v", velocity)];
+    writeln!(text, "{:>16}  {:13} {:>15} {:>15}  {:10} {:>10}", "t / s", "event", head[0], head[1], "next", "margin")?;
+    for event in motion.events.iter().take(MOST_EVENTS) {
+        let next = event.phase.map_or_else(|| event.next.to_owned(), |phase| format!("{} {phase}", event.next));
+        // Only where the velocity is zero is anything decided, and neither bristles nor a contact without a level
+        // decide.
+        let decided =
+            motion.samples.z.is_empty() && matches!(event.kind.as_str(), "zero_velocity" | "breakaway+" | "breakaway-");
+        let margin =
+            if decided && event.margin.is_finite() { format!("{:+.2e}", event.margin) } else { "-".to_owned() };
+        writeln!(
+            text,
+            "{:16.12}  {:13} {:+15.8e} {:+15.8e}  {next:10} {margin:>10}",
+            event.t, event.kind, event.x, event.v
+        )?;
+    }
+    if let Some(more) = motion.events.len().checked_sub(MOST_EVENTS).filter(|more| *more > 0) {
+        writeln!(text, "… and {more} more")?;
+    }
+
+    let (samples, energy) = (&motion.samples, &motion.energy);
+    let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+    writeln!(text, "\nenergy at {} s (J)", last(&samples.t))?;
+    let mut energies = vec![("kinetic", &energy.kinetic), ("potential", &energy.potential)];
+    if let Some(work) = &energy.work {
+        energies.extend([
+            ("lost to friction", &work.friction),
+            ("lost to damping", &work.viscous),
+            ("brought from outside", &work.external),
+            ("balance", &work.balance),
+        ]);
+    }
+    for (name, values) in energies {
+        writeln!(text, "{name:>22} {:+.10e}", last(values))?;
+    }
+    if energy.work.is_none() {
+        writeln!(text, "{:>22} not kept by this engine", "work")?;
+    }
+
+    let count = samples.t.len();
+    let first = samples.t.first().copied().unwrap_or(0.0);
+    writeln!(text, "\n{count} samples from {first} s to {} s", last(&samples.t))?;
+    let states = samples.z.iter().enumerate().map(|(index, values)| (format!("state z{index}"), values, ""));
+    let motions = [("position".to_owned(), &samples.x, position), ("velocity".to_owned(), &samples.v, velocity)];
+    for (name, values, unit) in motions.into_iter().chain(states) {
+        let (low, high) = ends(values.iter().copied());
+        writeln!(text, "{}", format!("{name:>22} {low:+.6e} to {high:+.6e} {unit}").trim_end())?;
+    }
+    Ok(text)
 }
