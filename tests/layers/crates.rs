@@ -34,7 +34,16 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ),
     ("fmm-sim", &[THISERROR]),
     ("fmm-frf", &[PULP, THISERROR]),
-    ("fmm-identify", &[("rayon", "takes derivatives, starts and laws of a fit on all threads"), THISERROR]),
+    (
+        "fmm-identify",
+        &[
+            ("nalgebra", "Cholesky factors and eigenvalues of the covariances of a friction curve"),
+            RAND_CHACHA,
+            ("rand_distr", "normal variates behind the band of a friction curve"),
+            ("rayon", "takes derivatives, starts and laws of a fit on all threads"),
+            THISERROR,
+        ],
+    ),
     (
         "fmm-cli",
         &[

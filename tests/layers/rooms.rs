@@ -21,7 +21,7 @@ const ROOMS: &[(&str, &str)] = &[
     (
         "fmm-identify",
         "error finding law linear_algebra machine candidate threads warning experiment quantities problem residuals \
-         fit identification design judgement posterior report",
+         fit identification design friction_curve judgement posterior report",
     ),
     ("fmm-record", "error numerics sampling units record calculus examination files"),
     (

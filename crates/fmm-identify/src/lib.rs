@@ -40,6 +40,7 @@
 //! | What can a free vibration show? | frequency, damping per mass and friction per mass; not the mass |
 //! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
 //! | Which law? | [`search`] tries as many as the record asks for, [`compare`] those given, and both say when it does not decide; [`Candidate`] chooses one by its name |
+//! | How much friction at which speed, before any law? | [`FrictionCurve`], with intervals |
 //! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`identify_with`] and [`Terms`] |
 //! | Several records? | give them together: the law and the frequency are shared, initial states and offsets are not |
 //! | An accelerometer? | its record is a ring-down like any other; a filter of the sensor is stated or fitted, [`Sensor`] |
@@ -107,6 +108,7 @@ mod error;
 mod experiment;
 mod finding;
 mod fit;
+mod friction_curve;
 mod identification;
 mod judgement;
 mod law;
@@ -130,6 +132,7 @@ pub use experiment::{
 };
 pub use finding::{Contribution, Finding, Origin, Source};
 pub use fmm_model::Estimated;
+pub use friction_curve::{FrictionCurve, FrictionLevel};
 pub use identification::{
     FittedMotion, Identification, Profile, Profiles, Validation, identify, identify_observed, identify_with,
 };

@@ -407,6 +407,13 @@ impl Terms {
         self.iter().position(|fitted| fitted == term)
     }
 
+    /// The terms of the spring alone, without fixed parameters.
+    pub(crate) fn of_spring(&self) -> Self {
+        let mut terms = Self::NONE;
+        self.iter().filter(|term| term.is_spring()).for_each(|term| terms.has[term as usize] = true);
+        terms
+    }
+
     /// True if a term of the spring is fitted.
     pub(crate) fn has_spring(&self) -> bool {
         self.iter().any(Term::is_spring)

@@ -60,7 +60,7 @@ impl FrictionCurve {
 }
 
 /// Friction per mass of a law in `table` with `terms` by fitted `values`.
-fn friction(table: &Table, terms: &Terms, values: &[f64], speed: f64, losing: bool) -> Option<f64> {
+pub(crate) fn friction(table: &Table, terms: &Terms, values: &[f64], speed: f64, losing: bool) -> Option<f64> {
     let beside = |term: Term| terms.place(term).map_or(0.0, |place| values[table.oscillator + place]);
     let further = beside(Term::QuadraticDamping) + beside(Term::CubicDamping) * speed;
     let damping = beside(Term::LinearDamping) + further * speed;

@@ -286,6 +286,19 @@ impl<'a> Problem<'a> {
         (self.law().plain)(&self.motion(0, p, &[])?, sampling, trajectory)
     }
 
+    /// Velocities of `record` by these values.
+    pub(crate) fn velocities(
+        &self,
+        record: usize,
+        p: &[f64],
+        sampling: &Sampling,
+    ) -> Result<Vec<f64>, EvaluationError> {
+        let mut trajectory = Trajectory::new();
+        let sampling = sampling.clone().keeping(Channels::Velocity);
+        (self.law().plain)(&self.motion(record, p, &[])?, &sampling, &mut trajectory)?;
+        Ok(trajectory.velocity().values().to_vec())
+    }
+
     /// The events of `record` up to its end.
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let mut trajectory = Trajectory::new();
@@ -368,18 +381,23 @@ impl<'a> Problem<'a> {
 
     /// The signal of `record` without its offset at each of its rows, as `fit` has it; empty for lines of a spectrum.
     pub(crate) fn signal(&self, record: usize, fit: &Fit) -> Vec<f64> {
+        self.signal_by(record, fit.values(), fit.residuals())
+    }
+
+    /// The same by these values and their residuals.
+    pub(crate) fn signal_by(&self, record: usize, p: &[f64], residuals: &[f64]) -> Vec<f64> {
         let experiment = &self.experiments[record];
         let Some(rows) = self.row_ranges().nth(record).filter(|_| experiment.lines().is_none()) else {
             return Vec::new();
         };
-        let offset = self.offset(record, fit.values());
+        let offset = self.offset(record, p);
         let measured = experiment.kept().iter().flat_map(|range| &experiment.record().values()[range.clone()]);
-        let mut signal: Vec<f64> = fit.residuals()[rows]
+        let mut signal: Vec<f64> = residuals[rows]
             .iter()
             .zip(measured)
             .map(|(residual, measured)| residual / self.weights[record] + measured - offset)
             .collect();
-        for (size, shape) in self.disturbances(record, fit.values()) {
+        for (size, shape) in self.disturbances(record, p) {
             let kept = experiment.kept().iter().flat_map(|range| &shape[range.clone()]);
             signal.iter_mut().zip(kept).for_each(|(value, shape)| *value -= size * shape);
         }

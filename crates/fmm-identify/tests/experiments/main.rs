@@ -6,6 +6,7 @@ mod design;
 mod driven;
 mod force;
 mod force_curves;
+mod friction_curve;
 mod impact;
 mod joint;
 mod no_friction;

@@ -1,0 +1,230 @@
+//! The fit of a friction curve: linearised again at its mean until it stays.
+
+use std::ops::ControlFlow;
+
+use fmm_fit::{EvaluationError, Options, Residuals, autocorrelation_time};
+use fmm_friction::CoulombViscous;
+use fmm_sim::{Channels, Sampling};
+use nalgebra::DVector;
+
+use crate::error::IdentifyError;
+use crate::experiment::{Experiment, scaled};
+use crate::fit::stages::{Begin, fit_begun};
+use crate::friction_curve::levels::{KNOTS, LEVELS, Levels, TOP_SPEED, weights};
+use crate::friction_curve::likelihood::{Likelihood, Linearised};
+use crate::friction_curve::mixture::{Posterior, Prior};
+use crate::friction_curve::rules::{MOST_SAMPLES, MOST_STEPS, SAMPLES_PER_PERIOD, SETTLED};
+use crate::law::Law;
+use crate::machine::{Machine, Terms};
+use crate::problem::Problem;
+use crate::residuals::noise::ResidualNoise;
+use crate::residuals::rules::EXCESS;
+use crate::residuals::structure::are_correlated;
+
+/// A fitted friction curve in the units of its problem.
+pub(super) struct CurveFit {
+    pub(super) top: f64,
+    /// Friction in which the posterior is relative.
+    pub(super) scale: f64,
+    pub(super) posterior: Posterior,
+    /// ν of the noise (1).
+    pub(super) freedom: f64,
+    /// f₀ (Hz).
+    pub(super) frequency: f64,
+    /// Weights of the levels in the mean over the path.
+    pub(super) path: [f64; LEVELS],
+    /// Speed at or below which half of the half cycles have a sample.
+    pub(super) slowest: f64,
+    /// Residual over noise, if it is too large and no noise.
+    pub(super) excess: Option<f64>,
+    pub(super) is_settled: bool,
+}
+
+/// Motion of all records: speeds at dense times, and the lowest at the samples of each half cycle.
+struct Path {
+    speeds: Vec<f64>,
+    slowest: f64,
+}
+
+impl CurveFit {
+    /// The curve that `experiments` on `machine` share, with these terms of the spring beside it.
+    pub(super) fn of(machine: &Machine, spring: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        let simple = Problem::of(Law::of::<CoulombViscous>(), *machine, spring.clone(), experiments)?;
+        let options = Options::default();
+        let line = fit_begun(&simple, Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()))?;
+        let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
+        let path = Path::of(&simple, line.values()).map_err(failure)?;
+        let top = path.speeds.iter().copied().fold(0.0, f64::max);
+        let (first, shared) = (simple.quantities().law, simple.quantities().shared);
+        let [level, slope] = [line.values()[first], line.values()[first + 1]];
+        let mean = path.weights(top).map(f64::from);
+        let scale: f64 = mean.iter().zip(KNOTS).map(|(weight, s)| weight * (level + slope * s * top)).sum();
+        if !(top > 0.0 && scale > 0.0 && scale.is_finite()) {
+            return Err(IdentifyError::not_seen("the motion loses no energy, so there is no friction over speed"));
+        }
+        let terms = spring.clone().holding(TOP_SPEED, top)?;
+        let problem = Problem::of(Law::of::<Levels>(), *machine, terms, experiments)?.simulated_roughly();
+        let mut values = line.values()[..first].to_vec();
+        values.extend(KNOTS.map(|s| level + slope * s * top));
+        values.push(top);
+        values.extend_from_slice(&line.values()[shared..]);
+        Self::near(&problem, values, top, scale)
+    }
+
+    /// The curve of `problem` from these values on.
+    fn near(problem: &Problem<'_>, mut values: Vec<f64>, top: f64, scale: f64) -> Result<Self, IdentifyError> {
+        let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
+        if let Some(thinned) = problem.thinned() {
+            values = Settled::of(&problem.with_records(&thinned), values, scale)?.values;
+        }
+        let Settled { values, near, likelihood, posterior, is_settled } = Settled::of(problem, values, scale)?;
+        let path = Path::of(problem, &values).map_err(failure)?;
+        let residual = (near.sum_of_squares() / problem.len() as f64).sqrt();
+        let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
+        let ratio = residual / expected.fold(f64::MIN_POSITIVE, f64::max);
+        let is_correlated = autocorrelation_time(near.residuals()).is_some_and(are_correlated);
+        Ok(Self {
+            top,
+            scale,
+            posterior,
+            freedom: likelihood.freedom,
+            frequency: values[0],
+            path: path.weights(top),
+            slowest: path.slowest,
+            excess: (ratio > EXCESS && is_correlated).then_some(ratio),
+            is_settled,
+        })
+    }
+}
+
+/// End of the linearisations of a problem.
+struct Settled {
+    values: Vec<f64>,
+    near: Linearised,
+    likelihood: Likelihood,
+    posterior: Posterior,
+    /// The mean of the posterior is the curve about which it was linearised.
+    is_settled: bool,
+}
+
+impl Settled {
+    /// Linearises `problem` from these `values` on until the mean of the posterior stays, first for white noise, then
+    /// for that of the residuals.
+    fn of(problem: &Problem<'_>, mut values: Vec<f64>, scale: f64) -> Result<Self, IdentifyError> {
+        let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
+        let levels = problem.quantities().law..problem.quantities().law + LEVELS;
+        let (prior, mut noise, mut steps) = (Prior::new(), None, 0);
+        loop {
+            let near = Linearised::of(problem, &values, levels.start).map_err(failure)?;
+            let (mut likelihood, mut posterior) = near.posterior(problem, &values, scale, &prior, noise.as_ref())?;
+            let is_near = |posterior: &Posterior| {
+                let step = step_of_levels(posterior, &values[levels.clone()], scale);
+                let deviations = posterior.deviations();
+                step.iter().zip(deviations).all(|(step, deviation)| step.abs() <= SETTLED * scale * deviation)
+            };
+            let mut is_settled = is_near(&posterior);
+            if is_settled && noise.is_none() {
+                noise = near.noise(problem, &values);
+                if noise.is_some() {
+                    (likelihood, posterior) = near.posterior(problem, &values, scale, &prior, noise.as_ref())?;
+                    is_settled = is_near(&posterior);
+                }
+            }
+            steps += 1;
+            let step = likelihood.step(&step_of_levels(&posterior, &values[levels.clone()], scale));
+            let is_last = is_settled || steps > MOST_STEPS;
+            match (!is_last).then(|| moved(problem, &near, &values, &step, likelihood.variance)).flatten() {
+                Some(moved) => values = moved,
+                None => return Ok(Self { values, near, likelihood, posterior, is_settled }),
+            }
+        }
+    }
+}
+
+/// Change of the levels from `levels` to the mean of the `posterior`; no level falls below zero.
+fn step_of_levels(posterior: &Posterior, levels: &[f64], scale: f64) -> DVector<f64> {
+    let mean = posterior.mean();
+    DVector::from_fn(LEVELS, |i, _| (mean[i] * scale).max(0.0) - levels[i])
+}
+
+/// The `values` after as much of `step` as the residuals follow nearly as they were linearised; `None` if they follow
+/// none of it.
+fn moved(problem: &Problem<'_>, near: &Linearised, values: &[f64], step: &[f64], variance: f64) -> Option<Vec<f64>> {
+    /// Share of the predicted change, and variances, by which the sum of squares may differ from the prediction.
+    const WRONG: (f64, f64) = (0.3, 3.0);
+    let mut residuals = vec![0.0; problem.len()];
+    let mut share = 1.0;
+    while share > 1e-3 {
+        let trial = problem.clamped(&near.moved(values, step, share));
+        let scaled: Vec<f64> = step.iter().map(|by| share * by).collect();
+        let predicted = near.predicted(&scaled);
+        if problem.evaluate(&trial, &mut residuals, None).is_ok() {
+            let found: f64 = residuals.iter().map(|residual| residual * residual).sum();
+            let allowed = WRONG.0 * (near.sum_of_squares() - predicted).abs() + WRONG.1 * variance;
+            if found - predicted <= allowed {
+                return Some(trial);
+            }
+        }
+        share *= 0.5;
+    }
+    None
+}
+
+impl Path {
+    /// Of all records of `problem` by these values.
+    fn of(problem: &Problem<'_>, values: &[f64]) -> Result<Self, EvaluationError> {
+        let (mut speeds, mut lowest) = (Vec::new(), Vec::new());
+        for (record, experiment) in problem.experiments().iter().enumerate() {
+            let series = experiment.record();
+            let dense = experiment.guess().frequency() * SAMPLES_PER_PERIOD * series.duration();
+            let count = (dense.ceil() as usize).clamp(2, MOST_SAMPLES);
+            let sampling = Sampling::uniform(series.duration() / (count - 1) as f64, count)?;
+            speeds.extend(problem.velocities(record, values, &sampling)?.into_iter().map(f64::abs));
+            let sampling = Sampling::uniform(series.interval(), series.len())?;
+            let at_samples = problem.velocities(record, values, &sampling.keeping(Channels::Velocity))?;
+            lowest.extend(at_samples.chunk_by(|a, b| (a > &0.0) == (b > &0.0)).filter_map(|half_cycle| {
+                let moving = half_cycle.iter().map(|v| v.abs()).filter(|speed| *speed > 0.0);
+                moving.min_by(f64::total_cmp)
+            }));
+        }
+        lowest.sort_by(f64::total_cmp);
+        let slowest = lowest.get(lowest.len() / 2).copied().unwrap_or(0.0);
+        Ok(Self { speeds, slowest })
+    }
+
+    /// Weight of each level in the mean over the path, for a curve up to `top`.
+    fn weights(&self, top: f64) -> [f64; LEVELS] {
+        /// Steps of the relative speed in which the path is collected.
+        const BINS: usize = 4096;
+        let mut bins = vec![0.0; BINS + 1];
+        for speed in &self.speeds {
+            bins[((speed / top * BINS as f64).round() as usize).min(BINS)] += speed;
+        }
+        let all: f64 = bins.iter().sum();
+        let mut mean = [0.0; LEVELS];
+        for (bin, path) in bins.iter().enumerate().filter(|(_, path)| **path > 0.0) {
+            let own = weights(bin as f64 / BINS as f64);
+            mean.iter_mut().zip(own).for_each(|(mean, weight)| *mean += path / all * weight);
+        }
+        mean
+    }
+}
+
+impl Linearised {
+    /// Likelihood and posterior near the values `p`, relative to `scale`.
+    fn posterior(
+        &self,
+        problem: &Problem<'_>,
+        p: &[f64],
+        scale: f64,
+        prior: &Prior,
+        noise: Option<&ResidualNoise>,
+    ) -> Result<(Likelihood, Posterior), IdentifyError> {
+        let undetermined =
+            || IdentifyError::not_seen("the record does not determine the motion that friction slows down");
+        let likelihood = self.likelihood(problem, p, noise).ok_or_else(undetermined)?;
+        let (precision, information) = (&likelihood.precision * (scale * scale), &likelihood.information * scale);
+        let posterior = prior.posterior(&precision, &information);
+        if posterior.is_finite() { Ok((likelihood, posterior)) } else { Err(undetermined()) }
+    }
+}

@@ -1,0 +1,201 @@
+//! Likelihood of the levels: a record seen from near one curve.
+
+use fmm_fit::{EvaluationError, Residuals};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::friction_curve::levels::LEVELS;
+use crate::linear_algebra::inverse_of_products;
+use crate::problem::Problem;
+use crate::residuals::noise::{ResidualNoise, Series};
+
+/// Residuals of a problem and their derivatives near some values.
+pub(super) struct Linearised {
+    /// Places of the parameters behind the columns, the levels last.
+    places: Vec<usize>,
+    residuals: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+    /// Residuals of records; those of prior knowledge follow.
+    measured: usize,
+    /// (JᵀJ)⁻ of the records, row by row.
+    inverse: Vec<f64>,
+    /// Residuals of the records at the best curve of all, without any knowledge of curves.
+    left: Vec<f64>,
+}
+
+/// Gaussian likelihood of the levels b and of all else that is fitted, n.
+///
+/// ```text
+/// ln L(b) = ηᵀ b − ½ bᵀ Λ b
+/// ```
+///
+/// For white residuals with variance s², Λ is JᵀJ/s²; for others JᵀJ (JᵀΣJ)⁻¹ JᵀJ, which belongs to the sandwich
+/// (JᵀJ)⁻¹JᵀΣJ(JᵀJ)⁻¹. The rest n is integrated out: Λ = Λ_bb − Λ_bn Λ_nn⁻¹ Λ_nb.
+pub(super) struct Likelihood {
+    pub(super) precision: DMatrix<f64>,
+    pub(super) information: DVector<f64>,
+    /// Degrees of freedom of the noise (1).
+    pub(super) freedom: f64,
+    /// Variance of the residuals at the best curve.
+    pub(super) variance: f64,
+    rest: Cholesky<f64, Dyn>,
+    mixed: DMatrix<f64>,
+    slope: DVector<f64>,
+}
+
+impl Linearised {
+    /// The `problem` near the values `p`, of which those from `first` on are the levels.
+    pub(super) fn of(problem: &Problem<'_>, p: &[f64], first: usize) -> Result<Self, EvaluationError> {
+        let levels = first..first + LEVELS;
+        let is_free = |i: &usize| !levels.contains(i) && !problem.parameters()[*i].bounds().is_fixed();
+        let places: Vec<usize> = (0..p.len()).filter(is_free).chain(levels.clone()).collect();
+        let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
+        let (mut residuals, mut jacobian) = (vec![0.0; problem.len()], vec![0.0; elements]);
+        problem.evaluate(p, &mut residuals, Some(&mut jacobian))?;
+        let mut columns = vec![vec![0.0; residuals.len()]; places.len()];
+        let (mut row, mut rest) = (0, jacobian.as_slice());
+        for block in problem.blocks() {
+            for parameter in block.parameters() {
+                let (column, others) = rest.split_at(block.rows());
+                rest = others;
+                if let Some(place) = places.iter().position(|place| place == parameter) {
+                    columns[place][row..row + block.rows()].copy_from_slice(column);
+                }
+            }
+            row += block.rows();
+        }
+        let measured = problem.measured();
+        let of_records: Vec<Vec<f64>> = columns.iter().map(|column| column[..measured].to_vec()).collect();
+        let inverse = inverse_of_products(&of_records);
+        let mut left = residuals[..measured].to_vec();
+        let products: Vec<f64> = of_records.iter().map(|column| dot(column, &left)).collect();
+        for (row, column) in inverse.chunks(places.len()).zip(&of_records) {
+            let step = dot(row, &products);
+            left.iter_mut().zip(column).for_each(|(left, derivative)| *left -= step * derivative);
+        }
+        Ok(Self { places, residuals, columns, measured, inverse, left })
+    }
+
+    /// Residuals of the records.
+    pub(super) fn residuals(&self) -> &[f64] {
+        &self.residuals[..self.measured]
+    }
+
+    /// Sum of squares of all residuals.
+    pub(super) fn sum_of_squares(&self) -> f64 {
+        dot(&self.residuals, &self.residuals)
+    }
+
+    /// Sum of squares after `step`, if residuals were linear.
+    pub(super) fn predicted(&self, step: &[f64]) -> f64 {
+        let mut residuals = self.residuals.clone();
+        for (by, column) in step.iter().zip(&self.columns) {
+            residuals.iter_mut().zip(column).for_each(|(residual, derivative)| *residual += by * derivative);
+        }
+        dot(&residuals, &residuals)
+    }
+
+    /// The values `p` after `share` of `step`.
+    pub(super) fn moved(&self, p: &[f64], step: &[f64], share: f64) -> Vec<f64> {
+        let mut moved = p.to_vec();
+        self.places.iter().zip(step).for_each(|(place, by)| moved[*place] += share * by);
+        moved
+    }
+
+    /// Noise of the records as the residuals at the best curve show it; `None` if it is white.
+    pub(super) fn noise(&self, problem: &Problem<'_>, p: &[f64]) -> Option<ResidualNoise> {
+        let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| column[..self.measured].to_vec()).collect();
+        let signals: Vec<Vec<f64>> =
+            (0..problem.experiments().len()).map(|record| problem.signal_by(record, p, &self.residuals)).collect();
+        let series: Vec<Series<'_>> = problem
+            .row_ranges()
+            .zip(problem.experiments())
+            .zip(&signals)
+            .map(|((rows, experiment), signal)| Series {
+                rows,
+                signal: Some(signal),
+                period: experiment.record().rate() / experiment.guess().frequency(),
+                columns: &columns,
+                weights: &self.inverse,
+                plateaus: experiment.stays(),
+            })
+            .collect();
+        let noise = ResidualNoise::of(&self.left, &series);
+        (!noise.is_white()).then_some(noise)
+    }
+
+    /// The likelihood near the values `p`, for this `noise` if it is not white.
+    pub(super) fn likelihood(
+        &self,
+        problem: &Problem<'_>,
+        p: &[f64],
+        noise: Option<&ResidualNoise>,
+    ) -> Option<Likelihood> {
+        let order = self.places.len();
+        let rank = (0..order).filter(|i| self.inverse[i * (order + 1)] > 0.0).count();
+        let freedom = (self.measured as f64 - rank as f64).max(1.0);
+        let variance = (dot(&self.left, &self.left) / freedom).max(problem.noise().powi(2) * LEAST_NOISE);
+        // Columns of unit length.
+        let length = |column: &Vec<f64>| Some(dot(column, column).sqrt()).filter(|length| *length > 0.0).unwrap_or(1.0);
+        let scales: Vec<f64> = self.columns.iter().map(length).collect();
+        let product = |rows: std::ops::Range<usize>, i: usize, j: usize| {
+            dot(&self.columns[i][rows.clone()], &self.columns[j][rows]) / (scales[i] * scales[j])
+        };
+        let of_records = DMatrix::from_fn(order, order, |i, j| product(0..self.measured, i, j));
+        let slopes = |rows: std::ops::Range<usize>| {
+            DVector::from_fn(order, |i, _| {
+                dot(&self.columns[i][rows.clone()], &self.residuals[rows.clone()]) / scales[i]
+            })
+        };
+        let of_noise = noise.and_then(|noise| {
+            let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| column[..self.measured].to_vec()).collect();
+            let products = noise.products(&columns);
+            let mut products = DMatrix::from_fn(order, order, |i, j| products[i * order + j] / (scales[i] * scales[j]));
+            let ridge = 1e-13 * products.diagonal().max();
+            (0..order).for_each(|i| products[(i, i)] += ridge);
+            let inflation =
+                (0..order).map(|i| products[(i, i)] / (variance * of_records[(i, i)])).sum::<f64>() / order as f64;
+            Some((Cholesky::new(products)?.solve(&of_records), inflation))
+        });
+        let (weight, inflation) = of_noise.unwrap_or_else(|| (DMatrix::identity(order, order) / variance, 1.0));
+        // Weighted from the left: JᵀJ M⁻¹ of a symmetric M, here its transpose M⁻¹ JᵀJ.
+        let mut precision = weight.transpose() * &of_records;
+        let mut slope = -(weight.transpose() * slopes(0..self.measured));
+        let known = self.measured..self.residuals.len();
+        if !known.is_empty() {
+            let each = problem.noise().powi(-2);
+            precision += DMatrix::from_fn(order, order, |i, j| each * product(known.clone(), i, j));
+            slope -= slopes(known) * each;
+        }
+        let precision = DMatrix::from_fn(order, order, |i, j| {
+            0.5 * (precision[(i, j)] + precision[(j, i)]) * scales[i] * scales[j]
+        });
+        let slope = DVector::from_fn(order, |i, _| slope[i] * scales[i]);
+        let first = order - LEVELS;
+        let rest = Cholesky::new(precision.view((0, 0), (first, first)).into_owned())?;
+        let mixed = precision.view((0, first), (first, LEVELS)).into_owned();
+        let rest_slope = slope.rows(0, first).into_owned();
+        let own = precision.view((first, first), (LEVELS, LEVELS)).into_owned();
+        let of_levels = &own - mixed.transpose() * rest.solve(&mixed);
+        let of_levels = 0.5 * (&of_levels + of_levels.transpose());
+        let levels = DVector::from_fn(LEVELS, |i, _| p[self.places[first + i]]);
+        let information = slope.rows(first, LEVELS) - mixed.transpose() * rest.solve(&rest_slope) + &of_levels * levels;
+        let freedom = (freedom / inflation.max(1.0)).max(1.5);
+        Some(Likelihood { precision: of_levels, information, freedom, variance, rest, mixed, slope: rest_slope })
+    }
+}
+
+impl Likelihood {
+    /// The change of all parameters in the order of the columns, for this change of the levels.
+    pub(super) fn step(&self, of_levels: &DVector<f64>) -> Vec<f64> {
+        let of_rest = self.rest.solve(&(&self.slope - &self.mixed * of_levels));
+        of_rest.iter().chain(of_levels).copied().collect()
+    }
+}
+
+/// Square of the least deviation of residuals over the noise of a record (1): a record without noise has the rounding
+/// of its values.
+const LEAST_NOISE: f64 = 1e-4;
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,313 @@
+//! Friction over the speed of ring-downs, with a band and without a law.
+
+mod fit;
+mod level;
+mod levels;
+mod likelihood;
+mod mixture;
+mod report;
+mod rules;
+
+use fmm_model::Unit;
+
+pub use level::FrictionLevel;
+
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use crate::friction_curve::fit::CurveFit;
+use crate::friction_curve::levels::{KNOTS, LEVELS, weights};
+use crate::friction_curve::mixture::Posterior;
+use crate::friction_curve::rules::DRAWS;
+use crate::identification::Identification;
+use crate::law::naming::Units;
+use crate::machine::{Machine, Scale, Terms};
+use crate::problem::friction_curve::friction;
+use crate::quantities::table::{Table, mass_of_stiffness};
+
+/// Friction over the speed as ring-downs show it, without a law: the whole resistance to the motion, of the contact and
+/// of the machine. Damping of the machine that is declared is not part of it.
+///
+/// ```text
+/// m x″ + k x + R(|x′|) sgn x′ = 0,     R(v) = N μ(v) + c v + …
+/// ```
+///
+/// The curve is fifteen levels at fixed speeds with cubics between them, fitted through every reversal and stop. Before
+/// the record it is a constant, a straight line, perhaps one of the falling shapes of the laws of the catalogue, and a
+/// smooth remainder, of unknown sizes; the record weighs them. Intervals average over what is left.
+///
+/// What is not a function of the speed alone (a spring that is not linear, friction that changes during the record or
+/// with the position) is taken for friction over the speed as far as it looks like it; [`limits`](Self::limits) says if
+/// the residuals show it.
+///
+/// `Display` gives a table. With the feature `serde` it serialises.
+///
+/// ```
+/// use fmm_friction::CoulombViscous;
+/// use fmm_identify::{Experiment, FrictionCurve, Known, Machine, Preparation};
+/// # use fmm_model::Oscillator;
+/// # use fmm_record::{Quantity, Record};
+/// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
+///
+/// // A velocity record; here a simulated one: 10 kg, 2 Hz, 0.02 of a load of 140 N, 500 Hz, noise of 0.3 mm/s.
+/// # let scenario = Scenario::new(Oscillator::from_frequency(10.0, 2.0)?, CoulombViscous::new(0.02, 0.01)?, 140.0)?;
+/// # let motion = Exact.run(&scenario.starting_at(0.02, 0.0)?, &Sampling::uniform(2e-3, 1000)?)?;
+/// # let noise = |i: usize| 1e-3 * (((i * i * 7919) % 10_007) as f64 / 10_007.0 - 0.5);
+/// # let velocity = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
+/// let record = Record::new(0.0, 2e-3, velocity, Quantity::Velocity, "m/s")?;
+///
+/// let machine = Machine::of_mass(Known::exact(10.0)?)?.with_normal_load(Known::new(140.0, 0.1)?)?;
+/// let curve = FrictionCurve::of(&machine, &[Experiment::ring_down(&record, &Preparation::default())?])?;
+/// assert_eq!(curve.unit(), "1");
+/// let mean = curve.mean_over_path();
+/// let (low, high) = mean.interval(0.95).unwrap();
+/// assert!(low < mean.value() && mean.value() < high && mean.uncertainty() < 0.01 * mean.value());
+/// println!("{curve}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct FrictionCurve {
+    /// Speeds of the levels, in `speed_unit`.
+    speeds: [f64; LEVELS],
+    speed_unit: String,
+    posterior: Posterior,
+    /// Unit of the curve over that of the fit, and over that of the posterior.
+    unit_factor: f64,
+    factor: f64,
+    /// Relative standard uncertainty of the factor (1).
+    factor_uncertainty: f64,
+    freedom: f64,
+    path: [f64; LEVELS],
+    slowest: f64,
+    meaning: Meaning,
+    unit: String,
+    is_whole: bool,
+    limits: Vec<String>,
+}
+
+/// Kind of number in which friction is stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    Coefficient,
+    Force,
+    PerMass,
+}
+
+impl FrictionCurve {
+    /// The curve that `experiments` on `machine` share; all are ring-downs under the same load.
+    ///
+    /// Values are coefficients if mass or stiffness and the load are known, forces if only mass or stiffness is, and
+    /// forces per mass otherwise; the uncertainties of all of them are part of those of the curve.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Missing`] without an experiment, [`IdentifyError::WrongRecord`] for one that is no free
+    /// vibration, [`IdentifyError::Contradiction`] for different loads, and those of a fit that cannot begin.
+    pub fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        Self::with_spring(machine, &Terms::NONE, experiments)
+    }
+
+    /// The curve of the machine and the records of `found`, with the terms of its spring and the drifts of its records
+    /// beside it.
+    ///
+    /// # Errors
+    /// As for [`of`](Self::of), and [`IdentifyError::Contradiction`] for other `experiments` than those of `found`.
+    pub fn beside(found: &Identification, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        Self::with_spring(found.machine(), &found.terms().of_spring(), &found.experiments(experiments)?)
+    }
+
+    fn with_spring(machine: &Machine, spring: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        let reference = experiments.first().ok_or(IdentifyError::no_record())?;
+        if experiments.iter().any(|experiment| experiment.drive().is_some() || experiment.lines().is_some()) {
+            let what = "friction over speed without a law is found from ring-downs, not from driven motions";
+            return Err(IdentifyError::wrong_record(what.to_owned()));
+        }
+        if experiments.iter().any(|experiment| experiment.load_factor() != reference.load_factor()) {
+            let what = "friction over speed without a law takes ring-downs under one load: the whole resistance does \
+                        not follow the load";
+            return Err(IdentifyError::contradiction(what));
+        }
+        if machine.scale() == Scale::Unknown {
+            let what = "ring-downs do not show the mass: give a mass or a stiffness, or take everything per unit mass";
+            return Err(IdentifyError::contradiction(what));
+        }
+        let fit = CurveFit::of(machine, spring, experiments)?;
+        let units = Units::of(reference.record());
+        let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
+        let (meaning, factor, relative) = scale(machine, &units, fit.frequency);
+        let unit = match meaning {
+            Meaning::Coefficient => Unit::default().to_string(),
+            Meaning::Force => "N".to_owned(),
+            Meaning::PerMass => units.acceleration().to_string(),
+        };
+        let mut limits = Vec::new();
+        if let Some(ratio) = fit.excess {
+            limits.push(format!(
+                "residuals are {ratio:.1} times the noise and alike from sample to sample: something beside \
+                 friction over speed acts, such as a spring that is not linear or friction that changes in time"
+            ));
+        }
+        if !fit.is_settled {
+            limits.push("the fit did not settle: values and intervals are rough".to_owned());
+        }
+        Ok(Self {
+            speeds: KNOTS.map(|s| s * fit.top),
+            speed_unit: units.velocity().to_string(),
+            unit_factor: factor,
+            factor: factor * fit.scale,
+            factor_uncertainty: relative.hypot(gain),
+            posterior: fit.posterior,
+            freedom: fit.freedom,
+            path: fit.path,
+            slowest: fit.slowest,
+            meaning,
+            unit,
+            is_whole: machine.damping().is_none(),
+            limits,
+        })
+    }
+
+    /// Speeds of the levels, from rest to the top speed, in the [unit of speeds](Self::speed_unit).
+    pub fn speeds(&self) -> &[f64] {
+        &self.speeds
+    }
+
+    /// Unit of the speeds.
+    pub fn speed_unit(&self) -> &str {
+        &self.speed_unit
+    }
+
+    /// Friction at the [speeds](Self::speeds), in the [unit](Self::unit).
+    pub fn levels(&self) -> Vec<FrictionLevel> {
+        (0..LEVELS).map(|i| self.level(&unit_weights(i))).collect()
+    }
+
+    /// Unit of the friction: `"1"` for a coefficient, N for a force, else that of a force per mass.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// Friction at `speed`; `None` above the top speed, where nothing was recorded.
+    pub fn at(&self, speed: f64) -> Option<FrictionLevel> {
+        let top = self.speeds[LEVELS - 1];
+        (0.0..=top).contains(&speed).then(|| self.level(&weights(speed / top)))
+    }
+
+    /// Friction at rest, as the lowest speeds tell it.
+    pub fn at_rest(&self) -> FrictionLevel {
+        self.level(&unit_weights(0))
+    }
+
+    /// Mean friction over the path: the energy that is missing, over the path and, for a coefficient, the load.
+    pub fn mean_over_path(&self) -> FrictionLevel {
+        self.level(&self.path)
+    }
+
+    /// Friction at the top speed.
+    pub fn at_top_speed(&self) -> FrictionLevel {
+        self.level(&unit_weights(LEVELS - 1))
+    }
+
+    /// Intervals at all [speeds](Self::speeds) at once: they hold the whole curve with probability `level`. `None` for
+    /// a level outside (0, 1).
+    ///
+    /// Each is the value ± c u, with one c for all speeds, the quantile of the largest deviation in draws from the
+    /// curve's distribution (the same draws each time).
+    pub fn band(&self, level: f64) -> Option<Vec<(f64, f64)>> {
+        if !(level > 0.0 && level < 1.0) {
+            return None;
+        }
+        let levels = self.levels();
+        let by_factor: f64 = self.factor_uncertainty.powi(2);
+        let (mean, mut spread) = (self.posterior.mean(), self.posterior.deviations());
+        let floor = |value: f64| value.max(0.0);
+        spread.iter_mut().for_each(|deviation| *deviation = deviation.max(f64::MIN_POSITIVE));
+        let mut largest: Vec<f64> = self
+            .posterior
+            .draws(DRAWS)
+            .iter()
+            .map(|draw| {
+                let deviation = |i: usize| (floor(draw[i]) - floor(mean[i])).abs() / spread[i];
+                (0..LEVELS).map(deviation).fold(0.0, f64::max)
+            })
+            .collect();
+        largest.sort_by(f64::total_cmp);
+        let reach = largest[((level * largest.len() as f64) as usize).min(largest.len() - 1)];
+        // As much wider as Student's t is.
+        let student =
+            fmm_model::coverage_factor(level, self.freedom)? / fmm_model::coverage_factor(level, f64::INFINITY)?;
+        let interval = |(i, one): (usize, &FrictionLevel)| {
+            let deviation = (spread[i].powi(2) + by_factor * mean[i].powi(2)).sqrt() * self.factor;
+            let center = floor(mean[i]) * self.factor;
+            let (low, high) = one.interval(level).unwrap_or((center, center));
+            (floor(center - reach * student * deviation).min(low), (center + reach * student * deviation).max(high))
+        };
+        Some(levels.iter().enumerate().map(interval).collect())
+    }
+
+    /// Speed down to which the record has samples: half of the half cycles have one at or below it. The curve below
+    /// follows from the times of the reversals and from its smoothness.
+    pub fn slowest(&self) -> f64 {
+        self.slowest
+    }
+
+    /// True if the curve is the whole resistance; false if damping of the machine is declared and not part of it.
+    pub fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    /// Reasons not to take the curve for friction over the speed, one sentence each; empty if nothing speaks against
+    /// it.
+    pub fn limits(&self) -> &[String] {
+        &self.limits
+    }
+
+    /// Speeds and friction by the law of `found`, an identification of the same `experiments`, with the damping beside
+    /// it: what of the curve the law explains. `None` for a law that states no friction over the speed.
+    pub fn by_law(&self, found: &Identification, experiments: &[Experiment]) -> Option<Vec<(f64, f64)>> {
+        /// Speeds, closer near rest.
+        const POINTS: u32 = 100;
+        let (law, terms, values) = (found.family(), found.terms(), found.fit().values());
+        let (table, _) = Table::of(law, found.machine(), terms.clone(), experiments).ok()?;
+        let at = |step: u32| {
+            let speed = self.speeds[LEVELS - 1] * (f64::from(step) / f64::from(POINTS)).powi(2);
+            Some((speed, self.unit_factor * friction(&table, terms, values, speed, false)?))
+        };
+        (1..=POINTS).map(at).collect()
+    }
+
+    fn level(&self, weights: &[f64; LEVELS]) -> FrictionLevel {
+        let square = self.factor_uncertainty.powi(2);
+        let part = |(weight, mean, variance): (f64, f64, f64)| {
+            let mean = mean * self.factor;
+            (weight, mean, variance * self.factor * self.factor + square * mean * mean)
+        };
+        let parts = self.posterior.marginal(weights).into_iter().map(part).collect();
+        FrictionLevel::new(parts, self.freedom, self.unit.clone())
+    }
+}
+
+/// Weights of the level at place `i` alone.
+fn unit_weights(i: usize) -> [f64; LEVELS] {
+    std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 })
+}
+
+/// Meaning of the curve, its unit over that of the problem, and the relative standard uncertainty of that factor.
+fn scale(machine: &Machine, units: &Units, frequency: f64) -> (Meaning, f64, f64) {
+    let mass = match machine.scale() {
+        Scale::Mass(mass) => Some((mass.value(), mass.uncertainty() / mass.value())),
+        Scale::Stiffness(stiffness) => {
+            let mass = mass_of_stiffness(stiffness.value(), frequency);
+            Some((mass, stiffness.uncertainty() / stiffness.value()))
+        }
+        // The problem has forces, with mass and stiffness among its own quantities.
+        Scale::MassAndStiffness(..) => Some((1.0, 0.0)),
+        _ => None,
+    };
+    let Some((force, relative)) = mass.filter(|_| units.is_metric()) else { return (Meaning::PerMass, 1.0, 0.0) };
+    match machine.normal_load() {
+        Some(load) => {
+            let by_load = load.uncertainty() / load.value();
+            (Meaning::Coefficient, force / load.value(), relative.hypot(by_load))
+        }
+        None => (Meaning::Force, force, relative),
+    }
+}

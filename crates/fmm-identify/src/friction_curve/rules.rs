@@ -1,0 +1,48 @@
+//! Rules of the friction curve: every number that decides something, with its unit and its origin.
+//!
+//! Numbers without another origin were chosen on simulated records; the study of `docs/friction-curve.md` measures
+//! their effect on other records.
+
+/// Standard deviation of the constant and of the straight part of a curve beforehand, over the mean friction (1).
+/// Origin: no curve of friction with this mean lies beyond.
+pub(super) const LEVEL_AND_LINE: f64 = 3.0;
+
+/// Probability beforehand that a curve has no falling shape of the catalogue (1). Origin: as probable as each of the
+/// four families; with one half, bands hold a Gaussian fall in three of four records with noise of 5 %.
+pub(super) const SHAPELESS: f64 = 0.2;
+
+/// Fall speeds of the shapes over the top speed (1), equal factors apart. Origin: a sharper fall lies between rest and
+/// the first knots, a flatter one is nearly a line.
+pub(super) const FALL_SPEEDS: [f64; 14] =
+    [0.02, 0.026, 0.035, 0.047, 0.062, 0.083, 0.11, 0.147, 0.196, 0.26, 0.35, 0.46, 0.62, 0.82];
+
+/// Standard deviations of the size of a falling shape over the mean friction (1). Origin: static levels of dry contacts
+/// lie up to twice above the sliding ones.
+pub(super) const AMPLITUDES: [f64; 3] = [0.15, 0.3, 0.6];
+
+/// Deviations τ of the second differences of the remainder over ln(1 + s/s₀), over the mean friction (1). Origin: from
+/// nothing that a record shows to a curve without any shape.
+pub(super) const REMAINDERS: [f64; 8] = [1e-3, 3e-3, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32];
+
+/// Speed s₀ over the top speed (1), above which a curve is smooth over the logarithm of the speed. Origin: the knots.
+pub(super) const SMOOTH_FROM: f64 = 0.05;
+
+/// Weight over the largest one below which a part of the mixture is left out (1). Origin: all that are left out weigh
+/// less than 1 %.
+pub(super) const LEAST_WEIGHT: f64 = 1e-5;
+
+/// Linearisations at most. Origin: chosen; three to six are the rule.
+pub(super) const MOST_STEPS: usize = 20;
+
+/// Change of a level over its standard uncertainty below which the curve has settled (1). Origin: chosen, far below
+/// anything that is stated.
+pub(super) const SETTLED: f64 = 0.05;
+
+/// Draws behind a simultaneous band. Origin: its reach is known to 1 %.
+pub(super) const DRAWS: usize = 4000;
+
+/// Samples of the motion in a period by which the path is weighed. Origin: weights to 1e-4.
+pub(super) const SAMPLES_PER_PERIOD: f64 = 400.0;
+
+/// Such samples at most. Origin: time.
+pub(super) const MOST_SAMPLES: usize = 200_000;

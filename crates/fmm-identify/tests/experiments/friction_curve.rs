@@ -1,0 +1,185 @@
+//! Friction over speed without a law, from records whose curve is known.
+
+use fmm_friction::CoulombViscous;
+use fmm_identify::{Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation};
+use fmm_model::Oscillator;
+use fmm_record::{Quantity, Record};
+use fmm_sim::{Engine, Exact, Sampling, Scenario};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, Normal};
+
+/// Velocity (m/s) of 2 Hz, F/m = 0.3 m/s² and c/m of this `damping` (1/s), released at 20 mm, at `rate` (Hz), noise
+/// left out.
+fn velocity(damping: f64, rate: f64) -> Vec<f64> {
+    let law = CoulombViscous::new(0.3, damping).unwrap();
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+    let sampling = Sampling::uniform(1.0 / rate, (2.6 * rate) as usize).unwrap();
+    let motion = Exact.run(&scenario.starting_at(0.02, 0.0).unwrap(), &sampling).unwrap();
+    motion.velocity().values().to_vec()
+}
+
+fn noisy(values: &[f64], noise: f64, seed: u64) -> Vec<f64> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let normal = Normal::new(0.0, noise).unwrap();
+    values.iter().map(|value| value + normal.sample(&mut random)).collect()
+}
+
+fn ring_down(values: Vec<f64>, rate: f64, unit: &str) -> Experiment {
+    let record = Record::sampled(rate, values, Quantity::Velocity, unit).unwrap();
+    Experiment::ring_down(&record, &Preparation::default()).unwrap()
+}
+
+fn curve(values: Vec<f64>, rate: f64) -> FrictionCurve {
+    FrictionCurve::of(&Machine::per_unit_mass(), &[ring_down(values, rate, "m/s")]).unwrap()
+}
+
+fn require_within(level: &FrictionLevel, truth: f64, times: f64) {
+    let distance = (level.value() - truth).abs();
+    assert!(distance <= times * level.uncertainty(), "{level} is not {truth}");
+}
+
+/// Constant friction: the curve is flat, and its mean over the path is the level.
+#[test]
+fn constant_friction_gives_a_flat_curve() {
+    let curve = curve(noisy(&velocity(0.0, 400.0), 5e-4, 1), 400.0);
+    assert_eq!((curve.unit(), curve.speed_unit(), curve.is_whole()), ("m/s²", "m/s", true));
+    for level in curve.levels() {
+        require_within(&level, 0.3, 2.6);
+    }
+    let mean = curve.mean_over_path();
+    require_within(&mean, 0.3, 2.0);
+    assert!(mean.uncertainty() < 2e-3 * 0.3, "{mean}");
+    assert!(curve.limits().is_empty(), "{:?}", curve.limits());
+    assert_eq!((curve.at(-1e-9), curve.at(1.01 * curve.speeds()[14])), (None, None));
+    assert_eq!(curve.at(0.0), Some(curve.at_rest()));
+}
+
+/// Of records with other noise, intervals at each speed hold the true line as often as they say, and bands wherever it
+/// lies.
+#[test]
+fn intervals_hold_the_true_line() {
+    const SEEDS: u64 = 12;
+    let clean = velocity(0.3, 400.0);
+    let (mut inside, mut all, mut whole) = (0, 0, 0);
+    for seed in 0..SEEDS {
+        let curve = curve(noisy(&clean, 1e-3, 10 + seed), 400.0);
+        let truth = |speed: f64| 0.3 + 0.3 * speed;
+        for (speed, level) in curve.speeds().iter().zip(curve.levels()) {
+            let (low, high) = level.interval(0.95).unwrap();
+            inside += u64::from((low..=high).contains(&truth(*speed)));
+            all += 1;
+        }
+        let band = curve.band(0.95).unwrap();
+        let holds = |(speed, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(&truth(*speed));
+        whole += u64::from(curve.speeds().iter().zip(&band).all(holds));
+    }
+    assert!(inside as f64 > 0.88 * all as f64, "{inside} of {all}");
+    assert!(whole >= SEEDS - 2, "{whole} of {SEEDS}");
+}
+
+/// Damping that is declared is not part of the curve, and its uncertainty is that of the slope.
+#[test]
+fn declared_damping_is_taken_out() {
+    let values = noisy(&velocity(0.3, 400.0), 2e-4, 3);
+    let machine = Machine::per_unit_mass().with_damping(Known::new(0.3, 0.01).unwrap()).unwrap();
+    let curve = FrictionCurve::of(&machine, &[ring_down(values, 400.0, "m/s")]).unwrap();
+    assert!(!curve.is_whole());
+    for level in curve.levels() {
+        require_within(&level, 0.3, 2.6);
+    }
+    let top = curve.speeds()[14];
+    assert!(curve.at_top_speed().uncertainty() > 0.009 * top, "{}", curve.at_top_speed());
+}
+
+/// Two ring-downs share the curve: it reaches to the larger of their speeds and is known better.
+#[test]
+fn ring_downs_share_the_curve() {
+    let values = velocity(0.3, 400.0);
+    let one = ring_down(noisy(&values, 1e-3, 4), 400.0, "m/s");
+    let later = values[400..].to_vec();
+    let other = ring_down(noisy(&later, 1e-3, 5), 400.0, "m/s");
+    let alone = FrictionCurve::of(&Machine::per_unit_mass(), std::slice::from_ref(&one)).unwrap();
+    let both = FrictionCurve::of(&Machine::per_unit_mass(), &[one, other]).unwrap();
+    assert!(both.at_rest().uncertainty() < alone.at_rest().uncertainty());
+    assert!((both.speeds()[14] / alone.speeds()[14] - 1.0).abs() < 0.01);
+    require_within(&both.at_rest(), 0.3, 2.6);
+}
+
+/// The record of an independent simulator: Coulomb and viscous friction, μ = 0.16844 and c/m = 0.0996 1/s.
+struct Control {
+    interval: f64,
+    velocities: Vec<f64>,
+}
+
+const MASS: f64 = 11.805_157_7;
+const LOAD: f64 = 14.713_691_5;
+
+impl Control {
+    fn read() -> Self {
+        let text = include_str!("../../../../tests/data/judgement/control.csv");
+        let rows = text.lines().skip(1).filter_map(|line| line.split_once(','));
+        let (times, velocities): (Vec<f64>, Vec<f64>) =
+            rows.map(|(t, v)| (t.parse::<f64>().unwrap(), v.parse::<f64>().unwrap())).unzip();
+        Self { interval: (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64, velocities }
+    }
+
+    fn curve(&self) -> FrictionCurve {
+        let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
+        let machine = machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap();
+        FrictionCurve::of(&machine, &[ring_down(self.velocities.clone(), 1.0 / self.interval, "m/s")]).unwrap()
+    }
+}
+
+/// Whole resistance in the mean over the path to 0.3 %.
+#[test]
+fn the_mean_over_the_path_is_that_of_an_independent_simulation() {
+    let control = Control::read();
+    let curve = control.curve();
+    let squares: f64 = control.velocities.iter().map(|v| v * v).sum();
+    let path: f64 = control.velocities.iter().map(|v| v.abs()).sum();
+    let truth = 0.168_44 + 0.0996 * MASS / LOAD * squares / path;
+    let mean = curve.mean_over_path();
+    assert!((mean.value() / truth - 1.0).abs() < 0.003, "{mean} in place of {truth}");
+    require_within(&mean, truth, 2.6);
+    require_within(&curve.at_rest(), 0.168_44, 2.6);
+}
+
+/// In mm/s the record gives the same curve, per mass.
+#[test]
+fn other_units_give_the_same_curve() {
+    let values = noisy(&velocity(0.3, 400.0), 5e-4, 6);
+    let metres = curve(values.clone(), 400.0);
+    let millimetres = values.iter().map(|v| 1e3 * v).collect();
+    let millimetres = FrictionCurve::of(&Machine::per_unit_mass(), &[ring_down(millimetres, 400.0, "mm/s")]).unwrap();
+    assert_eq!(millimetres.unit(), "mm/s²");
+    for (own, other) in metres.levels().iter().zip(millimetres.levels()) {
+        assert!((other.value() / 1e3 - own.value()).abs() < 0.01 * own.uncertainty(), "{own} and {other}");
+        assert!((other.uncertainty() / 1e3 / own.uncertainty() - 1.0).abs() < 0.01);
+    }
+}
+
+/// Ten times as many samples of the same motion and of noise with the same spectrum give the same curve: repeated
+/// samples are correlated, and count once.
+#[test]
+fn another_rate_gives_the_same_curve() {
+    let values = noisy(&velocity(0.3, 200.0), 5e-4, 7);
+    let slow = curve(values, 200.0);
+    // Noise of the same density in frequency: √10 times as large.
+    let fast = curve(noisy(&velocity(0.3, 2000.0), 10f64.sqrt() * 5e-4, 8), 2000.0);
+    for (own, other) in slow.levels().iter().zip(fast.levels()) {
+        let both = own.uncertainty().hypot(other.uncertainty());
+        assert!((own.value() - other.value()).abs() < 2.6 * both, "{own} and {other}");
+        assert!((0.6..1.7).contains(&(other.uncertainty() / own.uncertainty())), "{own} and {other}");
+    }
+}
+
+/// An end is refused in words for motions that have no such curve.
+#[test]
+fn runs_under_other_loads_are_refused() {
+    let values = noisy(&velocity(0.3, 400.0), 5e-4, 9);
+    let one = ring_down(values, 400.0, "m/s");
+    let other = one.clone().with_load_factor(2.0).unwrap();
+    let error = FrictionCurve::of(&Machine::per_unit_mass(), &[one, other]).unwrap_err();
+    assert!(error.to_string().contains("under one load"), "{error}");
+}
