@@ -3,7 +3,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::math;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, scalar_operators};
 
 /// A value with its partial derivatives in `N` directions, both exact through every operation.
 ///
@@ -112,7 +112,7 @@ impl<const N: usize> Div<f64> for Dual<N> {
     }
 }
 
-crate::scalar_operators!(Dual<N>, N: usize);
+scalar_operators!(Dual<N>, N: usize);
 
 impl<const N: usize> Scalar for Dual<N> {
     const DIRECTIONS: usize = N;

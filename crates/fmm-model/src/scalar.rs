@@ -184,6 +184,8 @@ macro_rules! scalar_operators {
     };
 }
 
+pub(crate) use scalar_operators;
+
 impl Scalar for f64 {
     const DIRECTIONS: usize = 0;
 
