@@ -12,6 +12,8 @@ pub(crate) struct Truth {
     pub(crate) right: Vec<&'static str>,
     /// μ (1).
     pub(crate) levels: Levels,
+    /// Relative change of the friction with each half cycle (1), of the mean.
+    pub(crate) change: f64,
     /// c/m of machine and law together (1/s).
     pub(crate) damping_per_mass: f64,
     /// f₀ (Hz).

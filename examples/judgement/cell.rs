@@ -1,6 +1,6 @@
 //! One question of the study: a kind of record, drawn as often as wanted.
 
-use super::{Case, Found, Random, coverage, disturbances, falling, laws};
+use super::{Case, Found, Random, changing, coverage, disturbances, falling, laws};
 
 /// Which question a cell asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,6 +11,8 @@ pub(crate) enum Group {
     Disturbance,
     /// And where friction falls with the speed?
     Falling,
+    /// And where friction changes during the record?
+    Changing,
     /// Is the law told that moved the machine?
     Law,
 }
@@ -51,6 +53,6 @@ impl Cell {
 
 /// All cells.
 pub(crate) fn cells() -> Vec<Cell> {
-    let groups = [coverage::cells(), disturbances::cells(), falling::cells(), laws::cells()];
+    let groups = [coverage::cells(), disturbances::cells(), falling::cells(), changing::cells(), laws::cells()];
     groups.into_iter().flatten().collect()
 }

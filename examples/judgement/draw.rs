@@ -107,6 +107,21 @@ impl Drawn {
         (self.stiffness / self.mass).sqrt() * self.release
     }
 
+    /// Half cycles before the stop or the end (1).
+    pub(crate) fn half_cycles(&self) -> f64 {
+        self.half_cycles
+    }
+
+    /// Samples a period (1).
+    pub(crate) fn samples(&self) -> f64 {
+        self.samples
+    }
+
+    /// Largest speed over noise (1).
+    pub(crate) fn signal_to_noise(&self) -> f64 {
+        self.signal_to_noise
+    }
+
     /// A contact of `law` on it under `load` (N).
     pub(crate) fn with(&self, law: &'static str, values: Vec<f64>, load: f64, right: &[&'static str]) -> Setup {
         Setup {

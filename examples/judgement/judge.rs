@@ -17,6 +17,12 @@ fn default_judgement(machine: &Machine, decays: &[Experiment]) -> Result<Compari
 /// their own.
 fn plain(name: &str) -> String {
     let name = name.split(',').next().unwrap_or(name).trim();
+    if let Some(changing) = name.strip_suffix(" + curved change") {
+        return plain(changing);
+    }
+    if let Some(steady) = name.strip_suffix(" + change") {
+        return format!("{} + change", plain(steady));
+    }
     match name.strip_suffix(" + linear") {
         Some("coulomb") => "coulomb_viscous".to_owned(),
         Some(law) => law.to_owned(),
@@ -67,6 +73,8 @@ pub(crate) struct Verdict {
     /// Kinds of the warnings, each once.
     pub(crate) warnings: Vec<String>,
     pub(crate) is_loud: bool,
+    /// The largest change of the friction with each half cycle (1) that is said not to show, with its price.
+    pub(crate) unseen: Option<f64>,
     /// μ of a law with one level; of others a level that they have a parameter for.
     pub(crate) mu: Option<Stated>,
     /// c/m (1/s).
@@ -92,6 +100,7 @@ pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
         named: named(&comparison),
         warnings,
         is_loud: is_loud(comparison.warnings()),
+        unseen: comparison.friction_change().map(|change| change.largest_unseen()),
         mu: finding(&["mu", "sliding_mu", "static_mu", "gaining_mu"]),
         damping: finding(&["damping_per_mass"]),
         frequency: finding(&["natural_frequency_hz"]),

@@ -8,6 +8,7 @@
 
 mod case;
 mod cell;
+mod changing;
 mod coverage;
 mod disturbances;
 mod document;

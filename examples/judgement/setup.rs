@@ -35,7 +35,7 @@ impl Setup {
         Law::named(self.law).ok_or_else(|| format!("there is no law {}", self.law).into())
     }
 
-    fn oscillator(&self) -> Found<Oscillator> {
+    pub(crate) fn oscillator(&self) -> Found<Oscillator> {
         let damping = Damping::new(self.damping, self.quadratic)?;
         Ok(Oscillator::new(self.mass, self.stiffness)?.with_damping(damping))
     }
@@ -62,6 +62,7 @@ impl Setup {
         Ok(Truth {
             right: self.right.clone(),
             levels: law.levels(&self.values, peak_speed).ok_or("the law has no level")?,
+            change: 0.0,
             damping_per_mass: (self.damping + self.load * law.slope(&self.values)) / self.mass,
             frequency: self.oscillator()?.natural_frequency(),
             peak_speed,

@@ -121,6 +121,9 @@ impl Summary {
     }
 
     fn count(&mut self, truth: &Truth, verdict: &Verdict) {
+        // An assumption with its price is a word on a change that does not show, and on no other.
+        let is_priced = truth.change != 0.0 && verdict.unseen.is_some_and(|unseen| truth.change.abs() < unseen);
+        let is_loud = verdict.is_loud || is_priced;
         let holds_mu = verdict
             .mu
             .filter(|mu| mu.interval.is_some())
@@ -128,8 +131,8 @@ impl Summary {
         match holds_mu {
             Some(holds) => {
                 self.mu.add(holds);
-                self.loud_misses += usize::from(!holds && verdict.is_loud);
-                self.silent_misses += usize::from(!holds && !verdict.is_loud);
+                self.loud_misses += usize::from(!holds && is_loud);
+                self.silent_misses += usize::from(!holds && !is_loud);
             }
             None => self.without_mu += usize::from(truth.levels.rest > 0.0),
         }
@@ -141,7 +144,7 @@ impl Summary {
         }
         let is_right = |law: &String| truth.right.contains(&law.as_str());
         self.decided += usize::from(verdict.is_decided);
-        let tally = match (verdict.is_decided, verdict.named.iter().any(is_right), verdict.is_loud) {
+        let tally = match (verdict.is_decided, verdict.named.iter().any(is_right), is_loud) {
             (true, true, _) => &mut self.right,
             (true, false, true) => &mut self.wrong_loud,
             (true, false, false) => &mut self.wrong_silent,
@@ -149,7 +152,7 @@ impl Summary {
             (false, false, _) => &mut self.not_among,
         };
         *tally += 1;
-        self.silently_wrong += usize::from(verdict.is_decided && !verdict.is_loud && is_wrong(truth, verdict));
+        self.silently_wrong += usize::from(verdict.is_decided && !is_loud && is_wrong(truth, verdict));
         *self.preferred.entry(verdict.preferred.clone()).or_default() += 1;
         for (names, counts) in [(&verdict.named, &mut self.named), (&verdict.warnings, &mut self.warnings)] {
             for name in names {

@@ -36,8 +36,10 @@ silent    another is left, without
 pub(crate) fn text(summaries: &[Summary]) -> String {
     let mut text = HEAD.to_owned();
     rows(&mut text, summaries);
-    let laws: Vec<&Summary> =
-        summaries.iter().filter(|row| matches!(row.group, Some(Group::Law | Group::Falling))).collect();
+    let laws: Vec<&Summary> = summaries
+        .iter()
+        .filter(|row| matches!(row.group, Some(Group::Law | Group::Falling | Group::Changing)))
+        .collect();
     if !laws.is_empty() {
         text.push_str(HEAD_OF_LAWS);
         rows_of_laws(&mut text, &laws);

@@ -330,18 +330,14 @@ impl Experiment {
         &self.peaks
     }
 
-    /// Mean time of the path slid, and the time at which the motion ends, after the beginning of the record (s).
-    ///
-    /// The path of a half cycle is in proportion to its peak.
-    pub(crate) fn slide_times(&self) -> (f64, f64) {
-        let (start, duration) = (self.record.start(), self.record.duration());
+    /// Times after the beginning of the record (s) and shares of the path slid (1) of its half cycles: that of a half
+    /// cycle is in proportion to its peak. Of a record without peaks, the beginning and the end.
+    pub(crate) fn path_shares(&self) -> Vec<(f64, f64)> {
         let path: f64 = self.peaks.iter().map(|(_, value)| value.abs()).sum();
-        let moment: f64 = self.peaks.iter().map(|(time, value)| (time - start) * value.abs()).sum();
-        let last = self.peaks.last().map(|(time, _)| time - start + self.guess.frequency().recip());
-        match last {
-            Some(last) if path > 0.0 && moment > 0.0 => (moment / path, last),
-            _ => (0.5 * duration, duration),
+        if !(path > 0.0) {
+            return vec![(0.0, 0.5), (self.record.duration(), 0.5)];
         }
+        self.peaks.iter().map(|(time, value)| (time - self.record.start(), value.abs() / path)).collect()
     }
 
     /// Ranges of samples that are fitted; what lies between them is left out.

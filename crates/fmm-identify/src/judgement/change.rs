@@ -44,32 +44,12 @@ impl FrictionChange {
     /// The change that `found`, a fit to `experiments` by a law of the sliding speed without one, leaves in its
     /// residuals; `None` for other laws, for driven motions, and where the parameters can follow it.
     pub(crate) fn of(found: &Identification, experiments: &[Experiment]) -> Option<Self> {
-        let extended = with_change(&Candidate::fitted(found))?;
-        if experiments.iter().any(|experiment| experiment.drive().is_some()) || !found.residual_structure().is_noisy() {
-            return None;
-        }
-        let (machine, fit) = (*found.machine(), found.fit());
-        let base = Problem::of(found.family(), machine, found.terms().clone(), experiments).ok()?;
-        let problem = Problem::of(*extended.law(), machine, extended.terms().clone(), experiments).ok()?;
-        let index = problem.quantities().shared(Place::Term(Term::Change))?;
-        let mut direction = problem.columns(&problem.extended(fit), &[index]).ok()?.pop()?;
-        let tangent = found.tangent(&base)?;
-        let before: f64 = direction.iter().map(|d| d * d).sum();
-        let level = found.family().level().map(|level| base.quantities().law + level);
-        let relative = |level: usize| tangent.step(level, &direction) / fit.values()[level];
-        let moved = level.filter(|level| fit.values()[*level] > 0.0).map_or(0.0, relative);
-        tangent.take_out(&mut direction);
-        let square: f64 = direction.iter().map(|d| d * d).sum();
-        let noise = found.noise().product(&direction, &direction);
-        if !(square > LEAST_CHANGE * before && noise > 0.0) {
-            return None;
-        }
-        let product: f64 = direction.iter().zip(fit.residuals()).map(|(d, r)| d * r).sum();
+        let Asked { value, uncertainty, moved } = asked(found, experiments, Term::Change)?;
         // From a second to a half cycle.
         let half_cycle = 0.5 / reference(experiments).guess().frequency();
         Some(Self {
-            per_half_cycle: -product / square * half_cycle,
-            uncertainty: noise.sqrt() / square * half_cycle,
+            per_half_cycle: value * half_cycle,
+            uncertainty: uncertainty * half_cycle,
             price: moved / half_cycle,
         })
     }
@@ -112,6 +92,47 @@ impl fmt::Display for FrictionChange {
     }
 }
 
+/// Size of a term that residuals ask for, its standard uncertainty, and the relative error of the level over it.
+struct Asked {
+    value: f64,
+    uncertainty: f64,
+    moved: f64,
+}
+
+/// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, for
+/// driven motions, and where the parameters can follow it.
+fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Option<Asked> {
+    let is_next = |extended: &Candidate| extended.terms().has(term) && !found.terms().has(term);
+    let extended = with_change(&Candidate::fitted(found)).filter(is_next)?;
+    if experiments.iter().any(|experiment| experiment.drive().is_some()) || !found.residual_structure().is_noisy() {
+        return None;
+    }
+    let (machine, fit) = (*found.machine(), found.fit());
+    let base = Problem::of(found.family(), machine, found.terms().clone(), experiments).ok()?;
+    let problem = Problem::of(*extended.law(), machine, extended.terms().clone(), experiments).ok()?;
+    let index = problem.quantities().shared(Place::Term(term))?;
+    let mut direction = problem.columns(&problem.extended(fit), &[index]).ok()?.pop()?;
+    let tangent = found.tangent(&base)?;
+    let before: f64 = direction.iter().map(|d| d * d).sum();
+    let level = found.family().level().map(|level| base.quantities().law + level);
+    let relative = |level: usize| tangent.step(level, &direction) / fit.values()[level];
+    let moved = level.filter(|level| fit.values()[*level] > 0.0).map_or(0.0, relative);
+    tangent.take_out(&mut direction);
+    let square: f64 = direction.iter().map(|d| d * d).sum();
+    let noise = found.noise().product(&direction, &direction);
+    if !(square > LEAST_CHANGE * before && noise > 0.0) {
+        return None;
+    }
+    let product: f64 = direction.iter().zip(fit.residuals()).map(|(d, r)| d * r).sum();
+    Some(Asked { value: -product / square, uncertainty: noise.sqrt() / square, moved })
+}
+
+/// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself.
+pub(crate) fn asks_for_change(found: &Identification, experiments: &[Experiment]) -> bool {
+    let term = if found.terms().has(Term::Change) { Term::CurvedChange } else { Term::Change };
+    asked(found, experiments, term).is_some_and(|asked| asked.value.abs() > SHOWN_CHANGE * asked.uncertainty)
+}
+
 impl Candidate {
     /// The law and the terms of an identification.
     pub(crate) fn fitted(found: &Identification) -> Self {
@@ -119,14 +140,14 @@ impl Candidate {
     }
 }
 
-/// The `candidate` with friction that changes during the record, and its viscous part as damping of the machine, which
-/// does not; `None` for a law with internal state, one without friction and one that has the term.
+/// The `candidate` with friction that changes during the record, or whose change is curved if it has one, and its viscous
+/// part as damping of the machine, which stays; `None` for a law with internal state and one without friction.
 pub(crate) fn with_change(candidate: &Candidate) -> Option<Candidate> {
     let terms = candidate.terms().clone();
-    if !candidate.law().is_of_speed() || candidate.law().level().is_none() || terms.has(Term::Change) {
+    if !candidate.law().is_of_speed() || candidate.law().level().is_none() || terms.has(Term::CurvedChange) {
         return None;
     }
-    let terms = terms.with_change();
+    let terms = if terms.has(Term::Change) { terms.with_curved_change() } else { terms.with_change() };
     Some(match candidate.law_name() {
         CoulombViscous::NAME => Candidate::of::<Coulomb>().with(terms.with_linear_damping()),
         _ => candidate.clone().with(terms),

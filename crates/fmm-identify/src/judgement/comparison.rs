@@ -10,12 +10,13 @@ use crate::experiment::{Experiment, Experiments, RecordSummary};
 use crate::finding::{Finding, Source};
 use crate::identification::Identification;
 use crate::identification::beside::closest;
-use crate::judgement::change::{FrictionChange, with_change};
+use crate::judgement::change::{FrictionChange, asks_for_change, with_change};
 use crate::judgement::filtering::filtering_sensor;
 use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::machine::Machine;
+use crate::machine::terms::Term;
 use crate::warning::Warning;
 
 /// A law and the more general one that it was tested against.
@@ -105,7 +106,8 @@ pub fn compare_observed<'a>(
     mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Comparison, IdentifyError> {
     let allowed = |candidate: &Candidate| {
-        machine.steadiness().and_then(|_| with_change(candidate)).unwrap_or_else(|| candidate.clone())
+        let is_open = machine.steadiness().is_some() && !candidate.terms().has(Term::Change);
+        with_change(candidate).filter(|_| is_open).unwrap_or_else(|| candidate.clone())
     };
     let candidates: Vec<Candidate> = candidates.iter().map(allowed).collect();
     let candidates = candidates.as_slice();
@@ -181,7 +183,7 @@ impl Comparison {
         warnings.extend(misled(&identifications, preferred));
         warnings.extend(sensor);
         let change = FrictionChange::of(&identifications[preferred], decays);
-        if change.is_some_and(|change| change.is_shown()) {
+        if asks_for_change(&identifications[preferred], decays) {
             warnings.push(Warning::FrictionChanges { law: identifications[preferred].law().to_owned() });
             judgement.is_decided = false;
         }

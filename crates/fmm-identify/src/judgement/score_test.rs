@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use fmm_fit::{EvaluationError, Residuals};
-use fmm_friction::{Berger, CoulombViscous, Dahl};
+use fmm_fit::{Estimate, EvaluationError, Residuals};
+use fmm_friction::{Berger, Coulomb, CoulombViscous, Dahl, LawFamily};
 use fmm_model::{ModelError, Restoring};
 
 use crate::error::IdentifyError;
@@ -12,10 +12,13 @@ use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
 use crate::judgement::rules::{FALLS, LEAST_CHANGE, STEP};
 use crate::law::Law;
+use crate::law::naming::LINEAR;
 use crate::machine::Terms;
+use crate::machine::terms::Term;
 use crate::problem::Problem;
 use crate::problem::fitted::Fall;
 use crate::problem::tangent::Tangent;
+use crate::quantities::table::Place;
 use crate::residuals::rules::SIGNIFICANT;
 use crate::warning::Warning;
 
@@ -81,8 +84,8 @@ impl ScoreTest {
     }
 }
 
-/// Score tests of the residuals of `base`, an identification by Coulomb and viscous friction, and a warning for each
-/// extension that cannot be simulated.
+/// Score tests of the residuals of `base`, an identification by Coulomb and viscous friction that may change during the
+/// record, and a warning for each extension that cannot be simulated.
 ///
 /// ```text
 /// a = −dᵀr/dᵀd,     u² = dᵀΣd/(dᵀd)²,     d = (1 − J(JᵀJ)⁻¹Jᵀ) (m(a₀) − m(0))/a₀
@@ -94,44 +97,51 @@ pub(crate) fn score_tests(
     decays: &[Experiment],
 ) -> Result<(Vec<ScoreTest>, Vec<Warning>), IdentifyError> {
     let machine = *base.machine();
-    let problem = Problem::with_terms::<CoulombViscous>(machine, base.terms().clone(), decays)?;
-    let layout = problem.quantities();
-    if layout.oscillator != 1 || !base.terms().is_empty() {
+    let problem = Problem::of(base.family(), machine, base.terms().clone(), decays)?;
+    if problem.quantities().oscillator != 1 || !is_simple(base) {
         return Ok((Vec::new(), Vec::new()));
     }
-    let values = base.fit().values();
-    let (frequency, friction, damping) = (values[0], values[1], values[2]);
-    let own = &values[layout.shared..];
+    let value = |name: &str| base.fit().estimate(name).map_or(0.0, Estimate::value);
+    let friction = base.fit().values()[problem.quantities().law];
+    let damping = value(LINEAR);
     let (length, speed) = reference(decays).scales();
     // For a machine without friction, the level with the same losses.
     let level = friction.max(0.25 * PI * 0.5 * damping * speed).max(f64::MIN_POSITIVE);
-    let linear = Terms::NONE.with_linear_damping();
-    let residuals = |problem: &Problem<'_>, shared: &[f64]| -> Result<Vec<f64>, EvaluationError> {
-        let values: Vec<f64> = shared.iter().chain(own).copied().collect();
+    // The residuals of an extension with these `values` of its law, or a step of quadratic damping.
+    let residuals = |problem: &Problem<'_>, of_law: &[f64]| -> Result<Vec<f64>, EvaluationError> {
+        let table = problem.quantities();
+        let mut values = problem.extended(base.fit());
+        values[table.law..table.law + of_law.len()].copy_from_slice(of_law);
+        if let Some(quadratic) = table.shared(Place::Term(Term::QuadraticDamping)) {
+            values[quadratic] = STEP * level / (speed * speed);
+        }
         let mut residuals = vec![0.0; problem.len()];
         problem.evaluate(&values, &mut residuals, None)?;
         Ok(residuals)
     };
+    let of_base = &base.fit().values()[problem.quantities().of_law()];
     let mut changes: Vec<(Extension, Result<Vec<f64>, EvaluationError>)> = Vec::new();
+    let linear = base.terms().clone().with_linear_damping();
     for share in FALLS {
         let berger = Problem::of(Law::of::<Berger>(), machine, linear.clone(), decays)?;
-        let shared = [frequency, damping, friction, STEP * level, 1.0 / (share * speed)];
-        changes.push((Extension::FallsWithSpeed(share), residuals(&berger, &shared)));
+        let of_law = [friction, STEP * level, 1.0 / (share * speed)];
+        changes.push((Extension::FallsWithSpeed(share), residuals(&berger, &of_law)));
     }
-    let quadratic = Problem::of(Law::of::<CoulombViscous>(), machine, Terms::NONE.with_quadratic_damping(), decays)?;
-    let shared = [frequency, STEP * level / (speed * speed), friction, damping];
-    changes.push((Extension::QuadraticDamping, residuals(&quadratic, &shared)));
-    if friction > 0.0 {
+    let quadratic = base.terms().clone().with_quadratic_damping();
+    let quadratic = Problem::of(base.family(), machine, quadratic, decays)?;
+    changes.push((Extension::QuadraticDamping, residuals(&quadratic, of_base)));
+    // A contact with internal state takes no load that changes.
+    if friction > 0.0 && !base.terms().has(Term::Change) {
         let dahl = Problem::of(Law::of::<Dahl>(), machine, linear, decays)?;
-        let shared = [frequency, damping, friction, friction / (STEP * length), 1.0];
-        changes.push((Extension::Presliding, residuals(&dahl, &shared)));
+        let of_law = [friction, friction / (STEP * length), 1.0];
+        changes.push((Extension::Presliding, residuals(&dahl, &of_law)));
     }
     if machine.restoring() == Restoring::Linear {
         let softened = |length: f64| -> Result<_, ModelError> { Ok(machine.with_restoring(Restoring::sine(length)?)) };
         // The sine of x/L loses x²/6L² of the stiffness.
         let softened = softened(length / (6.0 * STEP).sqrt())?;
-        let softened = Problem::of(Law::of::<CoulombViscous>(), softened, Terms::NONE, decays)?;
-        changes.push((Extension::SofteningSpring, residuals(&softened, &values[..layout.shared])));
+        let softened = Problem::of(base.family(), softened, base.terms().clone(), decays)?;
+        changes.push((Extension::SofteningSpring, residuals(&softened, of_base)));
     }
     let no_derivatives = || EvaluationError::message("the fit has no derivatives");
     let tangent =
@@ -144,6 +154,18 @@ pub(crate) fn score_tests(
         }
     }
     Ok((tests, warnings))
+}
+
+/// True for Coulomb and viscous friction, be it steady or not.
+fn is_simple(base: &Identification) -> bool {
+    match base.family().name {
+        CoulombViscous::NAME => base.terms().is_empty(),
+        Coulomb::NAME => {
+            let changing = Terms::NONE.with_linear_damping().with_change();
+            *base.terms() == changing || *base.terms() == changing.with_curved_change()
+        }
+        _ => false,
+    }
 }
 
 /// The test of an `extension` whose small step makes the residuals `changed`; `None` if the parameters can follow it,

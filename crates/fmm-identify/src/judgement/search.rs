@@ -15,7 +15,7 @@ use crate::experiment::Experiment;
 use crate::fit::stages::Near;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
-use crate::judgement::change::{FrictionChange, identify_with_change, with_change};
+use crate::judgement::change::{asks_for_change, identify_with_change, with_change};
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::rules::{
@@ -264,9 +264,9 @@ where
         }
     }
     let run = Run { decays, ..run };
+    run.fit_changes(&mut found, decays, Found::simple)?;
     let (mut tests, mut left_out) = run.score_tests(&found);
     let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
-    run.fit_changes(&mut found, decays, Found::simple)?;
     if found.asks_for_more(&tests) {
         let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
@@ -407,7 +407,7 @@ impl Found {
     /// The simple laws leave something in the residuals.
     fn asks_for_more(&self, tests: &[ScoreTest]) -> bool {
         let held_back = |found: &Identification| found.damping_would_be_negative();
-        tests.iter().any(ScoreTest::is_significant) || self.is_structured() || self.simple().is_some_and(held_back)
+        tests.iter().any(ScoreTest::is_significant) || self.is_structured() || self.base().is_some_and(held_back)
     }
 
     /// The residuals of the best law are correlated.
@@ -423,6 +423,11 @@ impl Found {
     fn preferred(&self) -> Option<&Identification> {
         let judgement = Judgement::of(&self.candidates, &self.identifications)?;
         Some(&self.identifications[judgement.preferred])
+    }
+
+    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it if that is best.
+    fn base(&self) -> Option<&Identification> {
+        self.preferred().filter(|preferred| preferred.terms().has(Term::Change)).or_else(|| self.simple())
     }
 
     /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.
@@ -501,15 +506,21 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         decays: &[Experiment],
         base: fn(&Found) -> Option<&Identification>,
     ) -> Result<(), IdentifyError> {
-        let change = |base: &Identification| FrictionChange::of(base, decays);
-        let is_shown = |base: &&Identification| change(base).is_some_and(|change| change.is_shown());
+        let is_shown = |base: &&Identification| asks_for_change(base, decays);
         // Where the damping of the machine is known, a change of the friction may be all that is left of it.
         let is_dry = |known: &&Identification| self.machine.damping().is_some() && known.family().name == Coulomb::NAME;
         let dry = found.identifications.iter().find(is_dry);
         let Some(base) = base(found).filter(is_shown).or(dry.filter(is_shown)) else { return Ok(()) };
         // A law that falls with the speed may have taken a part of the change: the simple law is asked as well.
         let bases: Vec<Identification> = std::iter::once(base).chain(found.simple()).cloned().collect();
-        bases.iter().try_for_each(|base| self.fit_change(found, decays, base))
+        for base in &bases {
+            if let Some(changed) =
+                self.fit_change(found, decays, base)?.filter(|changed| asks_for_change(changed, decays))
+            {
+                self.fit_change(found, decays, &changed)?;
+            }
+        }
+        Ok(())
     }
 
     /// Replaces the laws that are left by the same with friction that changes, where it is known how little it does.
@@ -517,7 +528,8 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return Ok(()) };
         let left = (0..found.candidates.len()).filter(|place| judgement.is_left(*place));
         let bases: Vec<Identification> = left.map(|place| found.identifications[place].clone()).collect();
-        for base in bases.iter().filter(|base| with_change(&Candidate::fitted(base)).is_some()) {
+        let can_change = |base: &&Identification| with_change(&Candidate::fitted(base)).is_some();
+        for base in bases.iter().filter(|base| !base.terms().has(Term::Change)).filter(can_change) {
             let place = found.identifications.iter().position(|known| known.law() == base.law());
             if let Some(place) = place {
                 found.candidates.remove(place);
@@ -528,21 +540,28 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         Ok(())
     }
 
-    fn fit_change(&self, found: &mut Found, decays: &[Experiment], base: &Identification) -> Result<(), IdentifyError> {
+    /// Adds the fit by the law of `base` with the next term of a change, and gives it.
+    fn fit_change(
+        &self,
+        found: &mut Found,
+        decays: &[Experiment],
+        base: &Identification,
+    ) -> Result<Option<Identification>, IdentifyError> {
         let name = base.law().to_owned();
         let mut observe = |progress: &Progress<'_>| match self.observer.lock() {
             Ok(mut observer) => observer(&name, progress),
             Err(_) => ControlFlow::Break(()),
         };
         let changed = identify_with_change(base, self.machine, decays, self.options, &mut observe)?;
-        if let Some((candidate, identification)) = changed {
-            found.add(Found { candidates: vec![candidate], identifications: vec![identification], ..Found::default() });
-        }
-        Ok(())
+        let Some((candidate, identification)) = changed else { return Ok(None) };
+        let further =
+            Found { candidates: vec![candidate], identifications: vec![identification.clone()], ..Found::default() };
+        found.add(further);
+        Ok(Some(identification))
     }
 
     fn score_tests(&self, found: &Found) -> (Vec<ScoreTest>, Vec<Warning>) {
-        let Some(base) = found.simple() else { return (Vec::new(), Vec::new()) };
+        let Some(base) = found.base() else { return (Vec::new(), Vec::new()) };
         score_tests(base, self.decays)
             .unwrap_or_else(|error| (Vec::new(), vec![Warning::left_out("the score tests", &error)]))
     }

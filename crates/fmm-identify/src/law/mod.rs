@@ -25,8 +25,8 @@ pub(crate) struct Motion<D> {
     /// One value per parameter of the law.
     pub(crate) law: Vec<D>,
     pub(crate) normal_load: D,
-    /// Time (s) of a load that varies on a line up to it, and its factors at the beginning and then.
-    pub(crate) change: Option<(f64, [D; 2])>,
+    /// Distance in time (s) of the factors of a load that changes, and these (1).
+    pub(crate) change: Option<(f64, Vec<D>)>,
     /// Position and velocity at the beginning.
     pub(crate) initial: [D; 2],
     pub(crate) force: Option<Excitation<D>>,
@@ -38,9 +38,10 @@ impl<D: Scalar> Motion<D> {
     /// The scenario of it by family `F`.
     fn scenario<F: LawFamily>(&self) -> Result<Scenario<D, F::At<D>>, EvaluationError> {
         let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
-        let scenario = match self.change {
-            Some((end, factors)) => {
-                scenario.under_sampled_load(end, factors.map(|factor| self.normal_load * factor))?
+        let scenario = match &self.change {
+            Some((interval, factors)) => {
+                let loads: Vec<D> = factors.iter().map(|factor| self.normal_load * *factor).collect();
+                scenario.under_sampled_load(*interval, loads)?
             }
             None => scenario,
         };

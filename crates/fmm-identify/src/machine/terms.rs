@@ -54,8 +54,10 @@ pub(crate) enum Term {
     /// The stiffness beyond the stop before it.
     StopRatio,
     Gap,
-    /// Change w of the friction during the record, relative to its mean over the path slid.
+    /// Relative change w of the friction for each second.
     Change,
+    /// Change q of that change.
+    CurvedChange,
     /// Zero of the force, F₀.
     Zero,
     /// Inertia m v' of the mass between the force sensor and the contact.
@@ -78,7 +80,7 @@ pub(crate) enum Term {
 
 impl Term {
     /// All terms, in the order of their words in the name of a candidate.
-    pub(crate) const ALL: [Self; 20] = [
+    pub(crate) const ALL: [Self; 21] = [
         Self::LinearDamping,
         Self::QuadraticDamping,
         Self::CubicDamping,
@@ -90,6 +92,7 @@ impl Term {
         Self::StopRatio,
         Self::Gap,
         Self::Change,
+        Self::CurvedChange,
         Self::Zero,
         Self::Inertia,
         Self::Stiffness,
@@ -113,6 +116,7 @@ impl Term {
             Self::Stop => Some("stop"),
             Self::Gap => Some("gap"),
             Self::Change => Some("change"),
+            Self::CurvedChange => Some("curved change"),
             Self::Zero => Some("zero"),
             Self::Inertia => Some("inertia"),
             Self::Stiffness => Some("stiffness"),
@@ -141,6 +145,7 @@ impl Term {
             Self::PowerDamping => Some(Self::PowerExponent),
             Self::Stop => Some(Self::StopRatio),
             Self::Gravity => Some(Self::GravityCosine),
+            Self::CurvedChange => Some(Self::Change),
             _ => None,
         }
     }
@@ -158,7 +163,7 @@ impl Term {
 
     /// True for a term that a force along a motion has, and no vibration.
     const fn is_of_forces_alone(self) -> bool {
-        !self.is_damping() && !self.is_spring() && !matches!(self, Self::Change)
+        !self.is_damping() && !self.is_spring() && !matches!(self, Self::Change | Self::CurvedChange)
     }
 
     /// The power of the gain of a record to which its parameter is proportional; `exponent` is that of a power-law
@@ -205,6 +210,7 @@ impl Term {
             Self::StopRatio => ("stop_stiffness_ratio", "b", Unit::default(), Bounds::NOT_NEGATIVE),
             Self::Gap => ("gap", "g", position.clone(), Bounds::NOT_NEGATIVE),
             Self::Change => (CHANGE, "w", Unit::of("1/s"), Bounds::UNBOUNDED),
+            Self::CurvedChange => ("friction_change_curvature", "q", Unit::of("1/s²"), Bounds::UNBOUNDED),
             _ => return None,
         };
         Some(Parameter::named(name, symbol, unit.to_string()).bounded(bounds))
@@ -316,12 +322,23 @@ impl Terms {
         self.with(Term::QuinticSpring)
     }
 
-    /// The same with friction that changes during the record: N (1 + w (t − t₀)) in the place of N, with t₀ the mean time
-    /// of the path slid, so that the levels are those in the mean over the path. It changes all that the law gives; a
-    /// viscous part that shall stay is a linear damping beside the law. For laws of the sliding speed.
+    /// The same with friction that changes during the record:
+    ///
+    /// ```text
+    /// N exp(w τ) / ⟨exp(w τ)⟩ in the place of N,     τ = t − ⟨t⟩
+    /// ```
+    ///
+    /// with ⟨ ⟩ the mean over the path slid, so that the levels are those in that mean. It changes all that the law
+    /// gives; a viscous part that shall stay is a linear damping beside the law. For laws of the sliding speed.
     #[must_use]
     pub fn with_change(self) -> Self {
         self.with(Term::Change)
+    }
+
+    /// The same with friction that changes by w τ + q τ² in the exponent: such as while a contact warms.
+    #[must_use]
+    pub fn with_curved_change(self) -> Self {
+        self.with(Term::CurvedChange)
     }
 
     /// The same with damping that may come out negative. A negative damper is no damper; it says that the law lacks

@@ -70,10 +70,7 @@ impl Table {
                 Some(drive.excitation(experiment.record().start(), delay, per)?)
             }
         };
-        let change = beside(Term::Change).map(|change| {
-            let (mean, end) = experiment.slide_times();
-            (end, [change * -mean + 1.0, change * (end - mean) + 1.0])
-        });
+        let change = beside(Term::Change).map(|change| changing(experiment, change, beside(Term::CurvedChange)));
         let load = fitted(Place::NormalLoad).unwrap_or(D::from(1.0));
         Ok(Motion {
             oscillator: oscillator
@@ -87,4 +84,23 @@ impl Table {
             tolerance: None,
         })
     }
+}
+
+/// Straight pieces of a load that changes, which are within 1e-4 of an exponential of 0.8 over them.
+const PIECES: usize = 24;
+
+/// Distance in time (s) of load factors (1), and these: the exponential of a `change` (1/s) and its `curvature` (1/s²),
+/// over its mean on the path slid.
+fn changing<D: Scalar>(experiment: &Experiment, change: D, curvature: Option<D>) -> (f64, Vec<D>) {
+    let shares = experiment.path_shares();
+    let mean_time: f64 = shares.iter().map(|(time, share)| time * share).sum();
+    let factor = |time: f64| {
+        let time = time - mean_time;
+        let linear = change * time;
+        curvature.map_or(linear, |curvature| linear + curvature * (time * time)).exp()
+    };
+    let mean = shares.iter().fold(D::from(0.0), |sum, (time, share)| sum + factor(*time) * *share);
+    let end = shares.last().map_or(0.0, |(time, _)| *time) + experiment.guess().frequency().recip();
+    let interval = end / PIECES as f64;
+    (interval, (0..=PIECES).map(|piece| factor(piece as f64 * interval) / mean).collect())
 }

@@ -207,14 +207,6 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordi
     }
 }
 
-/// Relative changes of the friction for each second (1/s) that leave it positive in all experiments.
-fn bounds_of_change(experiments: &[Experiment]) -> Result<Bounds, IdentifyError> {
-    let times = || experiments.iter().map(Experiment::slide_times);
-    let before = times().map(|(mean, _)| mean).fold(0.0, f64::max);
-    let behind = times().map(|(mean, end)| end - mean).fold(0.0, f64::max);
-    Ok(Bounds::new(-behind.recip(), before.recip())?)
-}
-
 /// Knowledge of the relative change of the friction for each second (1/s) in a `record`.
 fn knowledge_of_change(machine: &Machine, record: &Experiment) -> Knowledge {
     machine.steadiness().map_or(Knowledge::Free, |for_each_half_cycle| Knowledge::Prior {
@@ -327,7 +319,6 @@ impl Table {
         let oscillator = rows.rows.len();
         for (term, parameter) in terms.iter().zip(terms.parameters(&units.position)) {
             if term == Term::Change {
-                let parameter = parameter.bounded(bounds_of_change(experiments)?);
                 rows.push(Place::Term(term), None, parameter, knowledge_of_change(machine, reference));
             } else {
                 rows.free(Place::Term(term), parameter);

@@ -63,9 +63,9 @@ pub(crate) const SCORING_STEPS: usize = 4;
 /// Floor of a growing noise, as a share of the mean square of the residuals (1). Origin: variances must stay positive.
 pub(crate) const LEAST_FLOOR: f64 = 1e-4;
 
-/// Standard uncertainties above which a score test or a negative damping is no chance (1). Origin: one in fifty on two
-/// sides.
-pub(crate) const SIGNIFICANT: f64 = 2.33;
+/// Standard uncertainties above which a score test or a negative damping is no chance (1). Origin: one in 370 on two
+/// sides, so that of the seven questions to a clean record one in about fifty records answers one by chance.
+pub(crate) const SIGNIFICANT: f64 = 3.0;
 
 /// Probability that noise alone looks like a drift (1). Origin: chosen.
 pub(crate) const CHANCE_OF_DRIFT: f64 = 1e-3;
