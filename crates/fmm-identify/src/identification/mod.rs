@@ -32,7 +32,7 @@ use crate::problem::fitted::Fitted;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Table;
 use crate::residuals::noise::ResidualNoise;
-use crate::residuals::rules::SIGNIFICANT;
+use crate::residuals::rules::SIGNIFICANT_FALL;
 use crate::residuals::structure::{Covariance, ResidualStructure};
 use crate::warning::Warning;
 
@@ -461,7 +461,7 @@ impl Identification {
             return false;
         };
         self.fitted.fit.estimates()[index].status().is_at_bound()
-            && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT)
+            && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT_FALL)
     }
 
     /// Headline quantities: the friction at large speed and at rest, as coefficient, force or per mass, whichever is

@@ -19,7 +19,7 @@ use crate::problem::Problem;
 use crate::problem::fitted::Fall;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Place;
-use crate::residuals::rules::SIGNIFICANT;
+use crate::residuals::rules::{SIGNIFICANT, SIGNIFICANT_FALL};
 use crate::warning::Warning;
 
 /// An extension of Coulomb and viscous friction on a linear spring.
@@ -78,9 +78,12 @@ impl ScoreTest {
         }
     }
 
-    /// Chance alone gives a size as large in one test of fifty or fewer.
+    /// Chance alone gives a size as large in one test of a hundred or fewer.
     pub fn is_significant(&self) -> bool {
-        self.significance().abs() > SIGNIFICANT
+        match self.extension {
+            Extension::FallsWithSpeed(_) if self.size > 0.0 => self.significance() > SIGNIFICANT_FALL,
+            _ => self.significance().abs() > SIGNIFICANT,
+        }
     }
 }
 

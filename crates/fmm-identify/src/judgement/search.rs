@@ -289,7 +289,7 @@ where
         let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
         let run = Run { options: &of_speed, ..run };
         // If a spring explains the records, no friction of the speed does.
-        if found.is_structured() || !found.is_bent() {
+        if found.is_structured() || !(found.is_bent() || found.changes()) {
             let further = found.unfinished().chain(run.candidates(search.at(SearchStage::FurtherOfSpeed))?).collect();
             let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
             found.add(further);
@@ -407,12 +407,20 @@ impl Found {
     /// The simple laws leave something in the residuals.
     fn asks_for_more(&self, tests: &[ScoreTest]) -> bool {
         let held_back = |found: &Identification| found.damping_would_be_negative();
-        tests.iter().any(ScoreTest::is_significant) || self.is_structured() || self.base().is_some_and(held_back)
+        tests.iter().any(ScoreTest::is_significant)
+            || self.changes()
+            || self.is_structured()
+            || self.base().is_some_and(held_back)
     }
 
     /// The residuals of the best law are correlated.
     fn is_structured(&self) -> bool {
         self.preferred().is_some_and(|preferred| preferred.residual_structure().is_correlated())
+    }
+
+    /// The best law is one of friction that changes during the record: laws that fall with the speed must be asked.
+    fn changes(&self) -> bool {
+        self.preferred().is_some_and(|preferred| preferred.terms().has(Term::Change))
     }
 
     /// The best law is one on a spring that is not linear.
@@ -506,6 +514,9 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         decays: &[Experiment],
         base: fn(&Found) -> Option<&Identification>,
     ) -> Result<(), IdentifyError> {
+        if self.is_late() {
+            return Ok(());
+        }
         let is_shown = |base: &&Identification| asks_for_change(base, decays);
         // Where the damping of the machine is known, a change of the friction may be all that is left of it.
         let is_dry = |known: &&Identification| self.machine.damping().is_some() && known.family().name == Coulomb::NAME;
@@ -561,9 +572,17 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
     }
 
     fn score_tests(&self, found: &Found) -> (Vec<ScoreTest>, Vec<Warning>) {
-        let Some(base) = found.base() else { return (Vec::new(), Vec::new()) };
-        score_tests(base, self.decays)
-            .unwrap_or_else(|error| (Vec::new(), vec![Warning::left_out("the score tests", &error)]))
+        let tests = |base| {
+            score_tests(base, self.decays)
+                .unwrap_or_else(|error| (Vec::new(), vec![Warning::left_out("the score tests", &error)]))
+        };
+        let (Some(base), Some(simple)) = (found.base(), found.simple()) else { return (Vec::new(), Vec::new()) };
+        let (mut of_base, warnings) = tests(base);
+        if found.changes() {
+            let is_presliding = |test: &ScoreTest| test.extension == Extension::Presliding;
+            of_base.extend(tests(simple).0.into_iter().filter(is_presliding));
+        }
+        (of_base, warnings)
     }
 }
 

@@ -329,8 +329,9 @@ mod tests {
     #[test]
     fn derivatives_of_friction_that_changes_are_those_of_differences() {
         let decays = decays();
-        let terms = Terms::default().with_change().with_linear_damping();
-        let problem = Problem::with_terms::<Coulomb>(Machine::per_unit_mass(), terms, &decays).unwrap();
+        let terms = Terms::default().with_curved_change().with_linear_damping();
+        let decays = &decays[..1];
+        let problem = Problem::with_terms::<Coulomb>(Machine::per_unit_mass(), terms, decays).unwrap();
         let mut p = values(&problem);
         let change = problem.parameters().iter().position(|parameter| parameter.name() == "friction_change").unwrap();
         p[change] = -0.2;

@@ -63,9 +63,13 @@ pub(crate) const SCORING_STEPS: usize = 4;
 /// Floor of a growing noise, as a share of the mean square of the residuals (1). Origin: variances must stay positive.
 pub(crate) const LEAST_FLOOR: f64 = 1e-4;
 
-/// Standard uncertainties above which a score test or a negative damping is no chance (1). Origin: one in 370 on two
-/// sides, so that of the seven questions to a clean record one in about fifty records answers one by chance.
+/// Standard uncertainties above which a score test is no chance (1). Origin: one in 370 on two sides, so that of the
+/// questions to a clean record one in about a hundred records answers one by chance.
 pub(crate) const SIGNIFICANT: f64 = 3.0;
+
+/// The same of what friction is expected to do: to fall with the speed, or to look like a negative damping (1). Origin:
+/// one in a hundred on one side; what falls and is not seen moves a level by several of its uncertainties.
+pub(crate) const SIGNIFICANT_FALL: f64 = 2.33;
 
 /// Probability that noise alone looks like a drift (1). Origin: chosen.
 pub(crate) const CHANCE_OF_DRIFT: f64 = 1e-3;
