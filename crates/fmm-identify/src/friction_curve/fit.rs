@@ -47,9 +47,9 @@ struct Path {
 }
 
 impl CurveFit {
-    /// The curve that `experiments` on `machine` share, with these terms of the spring beside it.
-    pub(super) fn of(machine: &Machine, spring: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        let simple = Problem::of(Law::of::<CoulombViscous>(), *machine, spring.clone(), experiments)?;
+    /// The curve that `experiments` on `machine` share, with these terms beside it.
+    pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        let simple = Problem::of(Law::of::<CoulombViscous>(), *machine, beside.clone(), experiments)?;
         let options = Options::default();
         let line = fit_begun(&simple, Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()))?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
@@ -62,7 +62,7 @@ impl CurveFit {
         if !(top > 0.0 && scale > 0.0 && scale.is_finite()) {
             return Err(IdentifyError::not_seen("the motion loses no energy, so there is no friction over speed"));
         }
-        let terms = spring.clone().holding(TOP_SPEED, top)?;
+        let terms = beside.clone().holding(TOP_SPEED, top)?;
         let problem = Problem::of(Law::of::<Levels>(), *machine, terms, experiments)?.simulated_roughly();
         let mut values = line.values()[..first].to_vec();
         values.extend(KNOTS.map(|s| level + slope * s * top));

@@ -102,19 +102,20 @@ impl FrictionCurve {
     /// [`IdentifyError::Missing`] without an experiment, [`IdentifyError::WrongRecord`] for one that is no free
     /// vibration, [`IdentifyError::Contradiction`] for different loads, and those of a fit that cannot begin.
     pub fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_spring(machine, &Terms::NONE, experiments)
+        Self::with_terms(machine, Terms::NONE, experiments)
     }
 
-    /// The curve of the machine and the records of `found`, with the terms of its spring and the drifts of its records
-    /// beside it.
+    /// The curve of the machine and the records of `found`, with the terms of its spring, its change of the friction
+    /// during the record and the drifts of its records beside it. Friction that changes has the curve of its mean over
+    /// the path.
     ///
     /// # Errors
     /// As for [`of`](Self::of), and [`IdentifyError::Contradiction`] for other `experiments` than those of `found`.
     pub fn beside(found: &Identification, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_spring(found.machine(), &found.terms().of_spring(), &found.experiments(experiments)?)
+        Self::with_terms(found.machine(), found.terms().beside_friction(), &found.experiments(experiments)?)
     }
 
-    fn with_spring(machine: &Machine, spring: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+    fn with_terms(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
         let reference = experiments.first().ok_or(IdentifyError::no_record())?;
         if experiments.iter().any(|experiment| experiment.drive().is_some() || experiment.lines().is_some()) {
             let what = "friction over speed without a law is found from ring-downs, not from driven motions";
@@ -129,7 +130,8 @@ impl FrictionCurve {
             let what = "ring-downs do not show the mass: give a mass or a stiffness, or take everything per unit mass";
             return Err(IdentifyError::contradiction(what));
         }
-        let fit = CurveFit::of(machine, spring, experiments)?;
+        let terms = if machine.steadiness().is_some() { terms.with_change() } else { terms };
+        let fit = CurveFit::of(machine, &terms, experiments)?;
         let units = Units::of(reference.record());
         let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
         let (meaning, factor, relative) = scale(machine, &units, fit.frequency);
@@ -230,7 +232,7 @@ impl FrictionCurve {
             })
             .collect();
         largest.sort_by(f64::total_cmp);
-        let reach = largest[((level * largest.len() as f64) as usize).min(largest.len() - 1)];
+        let reach = *largest.get((level * largest.len() as f64) as usize).or(largest.last())?;
         // As much wider as Student's t is.
         let student =
             fmm_model::coverage_factor(level, self.freedom)? / fmm_model::coverage_factor(level, f64::INFINITY)?;

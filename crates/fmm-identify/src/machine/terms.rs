@@ -424,11 +424,11 @@ impl Terms {
         self.iter().position(|fitted| fitted == term)
     }
 
-    /// The terms of the spring alone, without fixed parameters.
-    pub(crate) fn of_spring(&self) -> Self {
-        let mut terms = Self::NONE;
-        self.iter().filter(|term| term.is_spring()).for_each(|term| terms.has[term as usize] = true);
-        terms
+    /// The terms that are no friction over the speed, the spring and a change during the record, without fixed
+    /// parameters.
+    pub(crate) fn beside_friction(&self) -> Self {
+        let is_beside = |term: &Term| term.is_spring() || matches!(term, Term::Change | Term::CurvedChange);
+        self.iter().filter(is_beside).fold(Self::NONE, Self::with)
     }
 
     /// True if a term of the spring is fitted.

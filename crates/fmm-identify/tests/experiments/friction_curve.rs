@@ -97,7 +97,8 @@ fn declared_damping_is_taken_out() {
 fn ring_downs_share_the_curve() {
     let values = velocity(0.3, 400.0);
     let one = ring_down(noisy(&values, 1e-3, 4), 400.0, "m/s");
-    let later = values[400..].to_vec();
+    // From the first reversal on, half a period later.
+    let later = values[100..].to_vec();
     let other = ring_down(noisy(&later, 1e-3, 5), 400.0, "m/s");
     let alone = FrictionCurve::of(&Machine::per_unit_mass(), std::slice::from_ref(&one)).unwrap();
     let both = FrictionCurve::of(&Machine::per_unit_mass(), &[one, other]).unwrap();
@@ -174,7 +175,7 @@ fn another_rate_gives_the_same_curve() {
     }
 }
 
-/// An end is refused in words for motions that have no such curve.
+/// Different loads are refused: the resistance of the machine does not follow them.
 #[test]
 fn runs_under_other_loads_are_refused() {
     let values = noisy(&velocity(0.3, 400.0), 5e-4, 9);
