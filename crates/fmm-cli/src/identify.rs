@@ -16,7 +16,7 @@ use crate::posterior::Posterior;
 use crate::report::{self, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Drive, Experiment, ImpactTrial, Preparation};
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, FrictionCurve, ImpactTrial, Preparation};
 use fmm_record::{Column, Quantity, Record};
 use serde::Serialize;
 
@@ -107,11 +107,13 @@ fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -
 fn pictures(found: &Found) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
     let pictures = Pictures::of(&found.decay, &found.comparison)?;
     let unit = label("residual", found.decay.record().unit());
-    Ok(vec![
+    let curve = found.curve_panels().map(|panels| ("friction_curve.svg", drawn(&panels)));
+    let pictures = [
         ("fit.svg", drawn(&pictures.fit)),
         ("amplitude.svg", drawn(&pictures.amplitude)),
         ("residuals.svg", histogram(&unit, "residuals", &pictures.residuals)),
-    ])
+    ];
+    Ok(pictures.into_iter().chain(curve).collect())
 }
 
 /// Document for programs: the comparison, and the posterior if there is one.
@@ -120,7 +122,37 @@ struct Document<'a> {
     #[serde(flatten)]
     comparison: &'a Comparison,
     #[serde(skip_serializing_if = "Option::is_none")]
+    friction_curve: Option<Curve<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     posterior: &'a Option<Posterior>,
+}
+
+/// Friction over the speed without a law, or why it cannot be had.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Curve<'a> {
+    Found(&'a FrictionCurve),
+    Missing { missing: &'a str },
+}
+
+impl<'a> Curve<'a> {
+    fn of(found: &'a Result<FrictionCurve, String>) -> Self {
+        match found {
+            Ok(curve) => Self::Found(curve),
+            Err(reason) => Self::Missing { missing: reason },
+        }
+    }
+
+    /// Three numbers of the curve and what speaks against it, or why there is none.
+    fn text(&self) -> String {
+        match self {
+            Self::Found(curve) => {
+                let limits = curve.limits().iter().map(|limit| format!("; {limit}"));
+                std::iter::once(curve.headline()).chain(limits).chain([".".to_owned()]).collect()
+            }
+            Self::Missing { missing } => format!("friction over speed, no law assumed: none, as {missing}."),
+        }
+    }
 }
 
 /// Reads, prepares and fits the record; by a search unless there are `candidates`.
@@ -130,21 +162,26 @@ fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<d
     let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
     let decay = experiment(arguments, &input.record, &preparation)?;
     let comparison = fitted(arguments, &decay, candidates)?;
-    Ok(Found { origin: input.origin, decay, comparison, posterior: None })
+    Ok(Found { origin: input.origin, decay, comparison, curve: None, posterior: None })
 }
 
 /// Finds the law that explains a record, or the parameters of those that are named.
 pub(crate) fn identify(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
-    give_out(arguments, &arguments.question.candidates()?, command)
+    give_out(arguments, &arguments.question.candidates()?, true, command)
 }
 
 /// Compares the laws that are named, or else viscous, dry and both.
 pub(crate) fn compare(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
-    give_out(arguments, &arguments.question.compared()?, command)
+    give_out(arguments, &arguments.question.compared()?, false, command)
 }
 
 /// `command` is what was typed.
-fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> Result<(), Box<dyn Error>> {
+fn give_out(
+    arguments: &Arguments,
+    candidates: &[Candidate],
+    with_curve: bool,
+    command: &str,
+) -> Result<(), Box<dyn Error>> {
     arguments.output.folder()?;
     if let (true, Some(refusal)) = (arguments.posterior, Posterior::REFUSAL) {
         return Err(refusal.into());
@@ -153,6 +190,10 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
         files::require_writable(path)?;
     }
     let mut found = found(arguments, candidates)?;
+    found.curve = with_curve.then(|| {
+        let curve = FrictionCurve::beside(found.comparison.preferred(), std::slice::from_ref(&found.decay));
+        curve.map_err(|error| error.to_string())
+    });
     let posterior = arguments.posterior.then(|| Posterior::of(found.comparison.preferred(), &found.decay)).transpose();
     // What was found is given out without one as well.
     let failed = match posterior {
@@ -163,15 +204,27 @@ fn give_out(arguments: &Arguments, candidates: &[Candidate], command: &str) -> R
         Err(error) => Some(error),
     };
     if arguments.output.json {
-        let document = Document { comparison: &found.comparison, posterior: &found.posterior };
+        let friction_curve = found.curve.as_ref().map(Curve::of);
+        let document = Document { comparison: &found.comparison, friction_curve, posterior: &found.posterior };
         print_json(&document)?;
     } else {
-        print(format_args!("{}\n{}", found.origin, found.comparison))?;
+        let report = found.comparison.to_string();
+        // The headline of the laws, then that of the curve.
+        let (headline, rest) = report.split_once('\n').unwrap_or((&report, ""));
+        let curve = found.curve.as_ref().map_or_else(String::new, |curve| format!("{}\n", Curve::of(curve).text()));
+        print(format_args!("{}\n{headline}\n{curve}{rest}", found.origin))?;
         if let Some(posterior) = &found.posterior {
             print(posterior.text())?;
         }
     }
-    arguments.output.draw("{fit,amplitude,residuals}.svg", || pictures(&found))?;
+    arguments.output.draw(
+        if found.curve_panels().is_some() {
+            "{fit,amplitude,residuals,friction_curve}.svg"
+        } else {
+            "{fit,amplitude,residuals}.svg"
+        },
+        || pictures(&found),
+    )?;
     if let Some(path) = &arguments.report {
         let page = report::document(&found, arguments.given.bytes()?.as_ref(), command)?;
         std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use fmm_identify::{Comparison, Experiment, Finding};
+use fmm_identify::{Comparison, Experiment, Finding, FrictionCurve, FrictionLevel};
 use fmm_record::{Record, Swings};
 
 use crate::figure::{Panel, Role, label};
@@ -14,8 +14,38 @@ pub(crate) struct Found {
     pub(crate) origin: String,
     pub(crate) decay: Experiment,
     pub(crate) comparison: Comparison,
+    /// Friction over the speed without a law, or why it cannot be had; `None` where laws are compared.
+    pub(crate) curve: Option<Result<FrictionCurve, String>>,
     /// Of the preferred law, if that was asked for.
     pub(crate) posterior: Option<Posterior>,
+}
+
+impl Found {
+    /// Friction over the speed with its intervals, and the preferred law in it; `None` without a curve.
+    pub(crate) fn curve_panels(&self) -> Option<Vec<Panel>> {
+        let curve = self.curve.as_ref()?.as_ref().ok()?;
+        let speeds = curve.speeds();
+        let levels = curve.levels();
+        let quantity = if curve.unit() == "1" { "friction coefficient" } else { "friction" };
+        let along = |values: Vec<f64>| speeds.iter().copied().zip(values).collect::<Vec<_>>();
+        let end = |is_high: bool| {
+            let end = |(low, high): (f64, f64)| if is_high { high } else { low };
+            along(levels.iter().map(|level| level.interval(0.95).map_or(f64::NAN, end)).collect())
+        };
+        let band = curve.band(0.95).unwrap_or_default();
+        let preferred = self.comparison.preferred();
+        let by_law = curve.by_law(preferred, std::slice::from_ref(&self.decay));
+        let panel = Panel::new(label("speed", curve.speed_unit()), label(quantity, curve.unit()), 380.0)
+            .with(Role::Measured, "no law assumed", along(levels.iter().map(FrictionLevel::value).collect()))
+            .with(Role::Points, "95 % at each speed", end(false))
+            .with(Role::Points, "95 % at each speed", end(true))
+            .with(Role::Residual, "95 % for the whole curve", along(band.iter().map(|(low, _)| *low).collect()))
+            .with(Role::Residual, "95 % for the whole curve", along(band.iter().map(|(_, high)| *high).collect()));
+        Some(vec![match by_law {
+            Some(points) => panel.with(Role::Fitted, preferred.law(), points),
+            None => panel,
+        }])
+    }
 }
 
 /// Pictures of a fit.

@@ -27,7 +27,7 @@ const LAGS: usize = 300;
 
 /// The page on what was `found` in a record with these bytes by this `command`. The same input makes the same page.
 pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<String, Box<dyn Error>> {
-    let Found { origin, decay, comparison, posterior } = found;
+    let Found { origin, decay, comparison, posterior, .. } = found;
     let name = origin.split(", channel").next().unwrap_or(origin);
     let pictures = Pictures::of(decay, comparison)?;
     let json = serde_json::to_string(comparison)?;
@@ -37,6 +37,7 @@ pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<Str
         format!("<p>{}. {}.</p>\n", escaped(origin), escaped(&decay.summary().to_string())),
         section("Findings", &findings(found)),
         posterior.as_ref().map_or_else(String::new, |posterior| section("Posterior", &posterior.html())),
+        friction_curve(found),
         section("Limits", &warnings(found)),
         section(
             "Record and fit",
@@ -94,6 +95,24 @@ fn findings(found: &Found) -> String {
         escaped(preferred.law()),
         table("findings", &headings, preferred.findings().iter().map(row))
     )
+}
+
+/// Friction over the speed without a law, if it was looked for.
+fn friction_curve(found: &Found) -> String {
+    let content = match &found.curve {
+        None => return String::new(),
+        Some(Err(reason)) => format!("<p>It cannot be had: {}.</p>\n", escaped(reason)),
+        Some(Ok(curve)) => {
+            let limits: String = curve.limits().iter().map(|limit| format!("; {limit}")).collect();
+            let text = format!("<p>{}{}.</p>\n", escaped(&curve.headline()), escaped(&limits));
+            let caption = "Grey: friction over the speed, no law assumed, with its 95 % intervals at each speed. Dark: \
+                           95 % intervals for the whole curve. Red: the preferred law.";
+            found
+                .curve_panels()
+                .map_or(text.clone(), |panels| text + &figure(&drawn(&panels), caption, "friction_curve"))
+        }
+    };
+    section("Friction over speed", &content)
 }
 
 fn warnings(found: &Found) -> String {
@@ -203,8 +222,13 @@ mod tests {
         let damping = comparison.preferred().finding("damping_per_mass").unwrap();
         let (value, u) = (damping.value(), damping.uncertainty().unwrap());
         let k = coverage_factor(LEVEL, damping.degrees_of_freedom()).unwrap();
-        let found =
-            Found { origin: "<script>.csv, channel v: \"velocity\"".to_owned(), decay, comparison, posterior: None };
+        let found = Found {
+            origin: "<script>.csv, channel v: \"velocity\"".to_owned(),
+            decay,
+            comparison,
+            curve: None,
+            posterior: None,
+        };
         let page = document(&found, b"abc", "fmm identify <script>.csv").unwrap();
         assert_eq!(page, document(&found, b"abc", "fmm identify <script>.csv").unwrap());
         assert!(page.contains(&Rounded::new(value, Some(u)).to_string()) && !page.contains("http"));
