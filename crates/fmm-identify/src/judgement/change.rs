@@ -127,10 +127,11 @@ fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Opti
     Some(Asked { value: -product / square, uncertainty: noise.sqrt() / square, moved })
 }
 
-/// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself.
-pub(crate) fn asks_for_change(found: &Identification, experiments: &[Experiment]) -> bool {
+/// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself, by more than
+/// `limit` standard uncertainties.
+pub(crate) fn asks_for_change(found: &Identification, experiments: &[Experiment], limit: f64) -> bool {
     let term = if found.terms().has(Term::Change) { Term::CurvedChange } else { Term::Change };
-    asked(found, experiments, term).is_some_and(|asked| asked.value.abs() > SHOWN_CHANGE * asked.uncertainty)
+    asked(found, experiments, term).is_some_and(|asked| asked.value.abs() > limit * asked.uncertainty)
 }
 
 impl Candidate {

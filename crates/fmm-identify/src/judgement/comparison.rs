@@ -12,7 +12,7 @@ use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::judgement::change::{FrictionChange, asks_for_change, with_change};
 use crate::judgement::filtering::filtering_sensor;
-use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN};
+use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::machine::Machine;
@@ -183,7 +183,7 @@ impl Comparison {
         warnings.extend(misled(&identifications, preferred));
         warnings.extend(sensor);
         let change = FrictionChange::of(&identifications[preferred], decays);
-        if asks_for_change(&identifications[preferred], decays) {
+        if asks_for_change(&identifications[preferred], decays, SHOWN_CHANGE) {
             warnings.push(Warning::FrictionChanges { law: identifications[preferred].law().to_owned() });
             judgement.is_decided = false;
         }

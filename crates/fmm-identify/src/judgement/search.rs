@@ -19,7 +19,7 @@ use crate::judgement::change::{asks_for_change, identify_with_change, with_chang
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::rules::{
-    LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
+    ASKED_CHANGE, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
 use crate::judgement::{Judgement, shortcomings};
@@ -267,7 +267,16 @@ where
     run.fit_changes(&mut found, decays, Found::simple)?;
     let (mut tests, mut left_out) = run.score_tests(&found);
     let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
-    if found.asks_for_more(&tests) {
+    let changes = found.changes();
+    if changes {
+        // A fit with a change may take what a law that falls with the speed would explain.
+        let unknown =
+            |trial: &Trial| found.candidates.iter().all(|known| known.law_name() != trial.candidate.law_name());
+        let falling = search.at(SearchStage::Stribeck).into_iter().filter(unknown);
+        let falling = run.fit(run.candidates(falling)?, found.near(&falls, &[], 0).as_ref())?;
+        found.add(falling);
+    }
+    if found.asks_for_more(&tests) || changes && !found.changes() {
         let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
         found.add(falling);
         let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
@@ -407,10 +416,7 @@ impl Found {
     /// The simple laws leave something in the residuals.
     fn asks_for_more(&self, tests: &[ScoreTest]) -> bool {
         let held_back = |found: &Identification| found.damping_would_be_negative();
-        tests.iter().any(ScoreTest::is_significant)
-            || self.changes()
-            || self.is_structured()
-            || self.base().is_some_and(held_back)
+        tests.iter().any(ScoreTest::is_significant) || self.is_structured() || self.base().is_some_and(held_back)
     }
 
     /// The residuals of the best law are correlated.
@@ -418,7 +424,7 @@ impl Found {
         self.preferred().is_some_and(|preferred| preferred.residual_structure().is_correlated())
     }
 
-    /// The best law is one of friction that changes during the record: laws that fall with the speed must be asked.
+    /// The best law is one of friction that changes during the record.
     fn changes(&self) -> bool {
         self.preferred().is_some_and(|preferred| preferred.terms().has(Term::Change))
     }
@@ -517,7 +523,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         if self.is_late() {
             return Ok(());
         }
-        let is_shown = |base: &&Identification| asks_for_change(base, decays);
+        let is_shown = |base: &&Identification| asks_for_change(base, decays, ASKED_CHANGE);
         // Where the damping of the machine is known, a change of the friction may be all that is left of it.
         let is_dry = |known: &&Identification| self.machine.damping().is_some() && known.family().name == Coulomb::NAME;
         let dry = found.identifications.iter().find(is_dry);
@@ -526,7 +532,7 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
         let bases: Vec<Identification> = std::iter::once(base).chain(found.simple()).cloned().collect();
         for base in &bases {
             if let Some(changed) =
-                self.fit_change(found, decays, base)?.filter(|changed| asks_for_change(changed, decays))
+                self.fit_change(found, decays, base)?.filter(|changed| asks_for_change(changed, decays, ASKED_CHANGE))
             {
                 self.fit_change(found, decays, &changed)?;
             }
