@@ -74,7 +74,7 @@ fn scatter<F: LawFamily>(law: &[f64], tests: &[Test], refits: u64) -> Result<(f6
             let record = Record::sampled(RATE, values, Quantity::Velocity, "m/s")?;
             decays.push(Experiment::ring_down(&record, &Preparation::default())?.with_load_factor(load / LOAD)?);
         }
-        let problem = Problem::new::<F>(machine()?, &decays)?;
+        let problem = Problem::of(&Candidate::of::<F>(), machine()?, &decays)?;
         // Frequency and law, then what belongs to each record.
         let mut start = vec![(STIFFNESS / MASS).sqrt() / TAU];
         let force = LOAD / MASS;

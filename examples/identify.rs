@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use fmm_identify::{Experiment, Machine, Preparation, Search, search};
+use fmm_identify::{Experiment, Machine, Preparation, search};
 use fmm_record::{Quantity, Reader};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let decay = Experiment::ring_down(&reader.read(file)?.record, &Preparation::default())?;
     println!("{}\n", decay.summary());
 
-    let comparison = search(&Machine::per_unit_mass(), &[decay], &Search::default())?;
+    let comparison = search(&Machine::per_unit_mass(), &[decay])?;
     for finding in comparison.preferred().findings() {
         println!("{} = {finding}", finding.parameter().name());
     }

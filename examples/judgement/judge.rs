@@ -1,8 +1,7 @@
 //! The thing under test: what the crates say of a record when nothing is asked for.
 
-use fmm_identify::search;
 use fmm_identify::{
-    Comparison, Experiment, Finding, Identification, IdentifyError, Machine, Preparation, Search, Severity, Warning,
+    Comparison, Experiment, Finding, Identification, IdentifyError, Inquiry, Machine, Preparation, Severity, Warning,
 };
 
 use super::law::Law;
@@ -10,7 +9,7 @@ use super::{Case, Levels, Truth};
 
 /// The default judgement. This is the one place that knows how it is asked for.
 fn default_judgement(machine: &Machine, decays: &[Experiment]) -> Result<Comparison, IdentifyError> {
-    search(machine, decays, &Search::default().on_threads(1))
+    Inquiry::of(machine, decays).on_threads(1).search()
 }
 
 /// The name of a law without what is held of it, and without a linear damping beside it, which most laws do not have of

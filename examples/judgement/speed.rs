@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use fmm_fit::{Options, Progress, Residuals as _, solve};
 use fmm_friction::{BoucWen, Dahl, LawFamily, LuGre, MakkarDixon, Role, ShiftedMakkarDixon, Stribeck};
-use fmm_identify::{Experiment, Machine, Preparation, Problem, Terms, identify_observed};
+use fmm_identify::{Candidate, Experiment, Inquiry, Machine, Preparation, Problem, Terms};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::Sampling;
@@ -133,13 +133,14 @@ impl Scales {
 fn fit<F: LawFamily>(terms: &Terms, decays: &[Experiment], truth: Option<&[f64]>) -> Found<Ended> {
     let machine = Machine::per_unit_mass();
     let (begun, mut steps) = (Instant::now(), 0);
-    let mut count = |_: &Progress<'_>| {
+    let candidate = Candidate::of::<F>().with(terms.clone());
+    let count = |_: &str, _: &Progress<'_>| {
         steps += 1;
         ControlFlow::Continue(())
     };
-    let found = identify_observed::<F>(&machine, terms, decays, &Options::default(), &mut count)?;
+    let found = Inquiry::of(&machine, decays).observed_by(count).candidate(&candidate)?;
     let seconds = begun.elapsed().as_secs_f64();
-    let problem = Problem::with_terms::<F>(machine, terms.clone(), decays)?;
+    let problem = Problem::of(&candidate, machine, decays)?;
     let from = |truth: &[f64]| -> Found<f64> {
         // A hum that the preparation has found in the noise is none in truth.
         let truth = truth.iter().chain(std::iter::repeat(&0.0));

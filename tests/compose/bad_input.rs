@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use fmm_fit::{FitError, Options, Residuals, solve};
 use fmm_friction::{Coulomb, CoulombViscous, Viscous};
 use fmm_identify::{
-    Experiment, Identification, IdentifyError, Known, Machine, Offset, Preparation, Problem, Warning, identify,
+    Candidate, Experiment, Identification, IdentifyError, Known, Machine, Offset, Preparation, Problem, Warning,
+    identify,
 };
 use fmm_model::ModelError;
 use fmm_record::{Quantity, Reader, Record, RecordError};
@@ -163,7 +164,8 @@ fn machines_that_cannot_be() {
 #[test]
 fn a_start_outside_the_bounds() {
     let decay = prepare(vibration(4000)).unwrap();
-    let problem = Problem::new::<Viscous>(Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
+    let problem =
+        Problem::of(&Candidate::of::<Viscous>(), Machine::per_unit_mass(), std::slice::from_ref(&decay)).unwrap();
     let start = [2.0, -0.5, 0.0, 0.1, 0.0];
     assert_eq!(problem.parameters().len(), start.len());
     let error = solve(&problem, &start, &Options::default()).unwrap_err();

@@ -4,7 +4,7 @@ use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombViscous, Dahl, ExponentialPair, Hyperbolic, Karnopp,
     LawFamily, LuGre, MakkarDixon, PowerLaw, RegularisedStribeck, Stribeck, StribeckLorentzian, Viscous,
 };
-use fmm_identify::{Comparison, Experiment, Identification, Machine, Preparation, Search, search};
+use fmm_identify::{Comparison, Experiment, Identification, Machine, Preparation, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
@@ -27,7 +27,7 @@ fn searched<F: LawFamily>(values: &[f64], noise: f64) -> Comparison {
     let values = motion.velocity().values().iter().map(&mut noisy).collect();
     let record = Record::new(0.0, 1e-3, values, Quantity::Velocity, "m/s").unwrap();
     let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-    search(&Machine::per_unit_mass(), &[decay], &Search::default()).unwrap()
+    search(&Machine::per_unit_mass(), &[decay]).unwrap()
 }
 
 /// Whether a law is preferred, or not excluded where the record does not decide.

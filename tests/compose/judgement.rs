@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use fmm_friction::Coulomb;
 use fmm_identify::{
-    Candidate, Comparison, Experiment, Finding, Identification, IdentifyError, Known, Machine, Preparation, Search,
+    Candidate, Comparison, Experiment, Finding, Identification, IdentifyError, Inquiry, Known, Machine, Preparation,
     Warning, compare, search,
 };
 use fmm_model::{Damping, Oscillator, Restoring};
@@ -32,7 +32,7 @@ fn machine() -> Machine {
 
 fn judged(name: &str, quantity: Quantity, unit: &str) -> Comparison {
     let decay = Experiment::ring_down(&record(name, quantity, unit), &Preparation::default()).unwrap();
-    search(&machine(), &[decay], &Search::default()).unwrap()
+    search(&machine(), &[decay]).unwrap()
 }
 
 /// Whether the 95 % interval of the finding called `name` holds `truth`.
@@ -133,7 +133,7 @@ fn pendulum_by(stride: usize, laws: &[&str]) -> Comparison {
 fn presliding_is_looked_for() {
     for stride in [1, 10] {
         let (machine, decay) = pendulum(stride);
-        let comparison = search(&machine, &[decay], &Search::default()).unwrap();
+        let comparison = search(&machine, &[decay]).unwrap();
         let preferred = comparison.preferred();
         assert!(preferred.finding("contact_stiffness_per_mass").is_some(), "{comparison}");
         let left_out = |warning: &Warning| matches!(warning, Warning::StructuredResiduals { .. });
@@ -161,18 +161,18 @@ fn presliding_is_seen_however_often_it_is_sampled() {
 fn a_search_holds_by_law_and_ends_in_time() {
     let decay =
         Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
-    let holding = Search::default().holding(Some("stribeck"), "exponent", 1.0);
-    let comparison = search(&machine(), std::slice::from_ref(&decay), &holding).unwrap();
+    let inquiry = || Inquiry::of(&machine(), std::slice::from_ref(&decay));
+    let comparison = inquiry().holding(Some("stribeck"), "exponent", 1.0).search().unwrap();
     assert!(comparison.identifications().iter().any(|found| found.law() == "stribeck, exponent = 1"), "{comparison}");
-    let hurried = Search::default().within(std::time::Duration::ZERO);
+    let hurried = || inquiry().within(std::time::Duration::ZERO);
     // What is held of the simple laws changes nothing of that.
-    for hurried in [hurried.clone(), hurried.holding(None, "damping_per_mass", 0.1)] {
-        let comparison = search(&machine(), std::slice::from_ref(&decay), &hurried).unwrap();
+    for hurried in [hurried(), hurried().holding(None, "damping_per_mass", 0.1)] {
+        let comparison = hurried.search().unwrap();
         assert!(!comparison.is_complete() && comparison.warnings().contains(&Warning::TimeLimit), "{comparison}");
         assert_eq!(comparison.identifications().len(), 3);
     }
-    assert!(matches!(search(&machine(), &[], &Search::default()), Err(IdentifyError::Missing { .. })));
-    let nobody = search(&machine(), &[decay], &Search::default().holding(None, "colour", 1.0));
+    assert!(matches!(search(&machine(), &[]), Err(IdentifyError::Missing { .. })));
+    let nobody = inquiry().holding(None, "colour", 1.0).search();
     assert!(
         matches!(nobody, Err(IdentifyError::UnknownName { ref what }) if what.contains("\"colour\"")),
         "{nobody:?}"
@@ -184,8 +184,9 @@ fn a_search_holds_by_law_and_ends_in_time() {
 fn a_search_holds_by_the_names_of_fits() {
     let decay =
         Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
-    let holding = Search::default().holding(None, "damping_per_mass", 0.1);
-    let comparison = search(&machine(), &[decay], &holding).unwrap();
+    let decays = [decay];
+    let inquiry = Inquiry::of(&machine(), &decays).holding(None, "damping_per_mass", 0.1);
+    let comparison = inquiry.search().unwrap();
     assert!(comparison.identifications().len() > 10, "{comparison}");
     for found in comparison.identifications() {
         let damping = found.finding("damping_per_mass").map(Finding::value);
@@ -199,7 +200,7 @@ fn threads_change_nothing() {
     let decay =
         Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
     let on = |threads: usize| {
-        search(&machine(), std::slice::from_ref(&decay), &Search::default().on_threads(threads)).unwrap().to_string()
+        Inquiry::of(&machine(), std::slice::from_ref(&decay)).on_threads(threads).search().unwrap().to_string()
     };
     assert_eq!(on(1), on(3));
 }
@@ -209,7 +210,7 @@ fn threads_change_nothing() {
 fn a_law_that_follows_a_drift_is_not_decided_for() {
     for seed in [7, 17] {
         let decay = Experiment::ring_down(&drifting(seed), &Preparation::default()).unwrap();
-        let comparison = search(&machine(), &[decay], &Search::default()).unwrap();
+        let comparison = search(&machine(), &[decay]).unwrap();
         assert!(comparison.warnings().contains(&Warning::Drift), "{comparison}");
         let right = comparison.preferred().law() == "coulomb_viscous";
         assert!(right || !comparison.is_decided(), "{comparison}");

@@ -3,10 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
-use fmm_fit::Options;
 use fmm_friction::{Berger, Coulomb};
 use fmm_identify::{
-    Candidate, Comparison, Experiment, Identification, Machine, Preparation, Terms, Warning, compare, identify_observed,
+    Candidate, Comparison, Experiment, Identification, Inquiry, Machine, Preparation, Terms, Warning, compare,
 };
 use fmm_model::Restoring;
 
@@ -72,10 +71,13 @@ fn a_fit_grows_from_the_beginning_of_the_record() {
     let decay = Experiment::ring_down(&pendulum(), &Preparation::default()).unwrap();
     let terms = Terms::default().with_linear_damping();
     let mut steps = 0;
-    let found = identify_observed::<Coulomb>(&machine(), &terms, &[decay], &Options::default(), &mut |_| {
+    let decays = [decay];
+    let inquiry = Inquiry::of(&machine(), &decays).observed_by(|_, _| {
         steps += 1;
         ControlFlow::Continue(())
     });
+    let found = inquiry.candidate(&Candidate::of::<Coulomb>().with(terms));
+    drop(inquiry);
     close(found.unwrap().rms_residual(), 19.4e-3, "rms residual (rad)");
     assert!(steps < 400, "{steps} steps");
 }

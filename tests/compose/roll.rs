@@ -1,6 +1,6 @@
 //! Roll decay of a ship: a spring that softens and then hardens, fitted with friction and two kinds of damping.
 
-use fmm_identify::{Candidate, Experiment, Machine, Preparation, Search, compare, search};
+use fmm_identify::{Candidate, Experiment, Machine, Preparation, compare, search};
 use fmm_record::{Quantity, Record};
 
 /// The model ship from its release on, until the waves of the basin come back.
@@ -41,7 +41,7 @@ fn the_spring_of_a_ship_softens_and_hardens() {
 /// Nobody needs to know of the spring: the search finds it.
 #[test]
 fn the_search_finds_the_spring() {
-    let found = search(&Machine::per_unit_mass(), &[roll()], &Search::default()).unwrap();
+    let found = search(&Machine::per_unit_mass(), &[roll()]).unwrap();
     assert!(found.preferred().law().ends_with("cubic spring + quintic spring"), "{found}");
     assert!(found.preferred().rms_residual() < 2.9e-4, "{found}");
 }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use fmm_fit::{Options, solve};
 use fmm_friction::{Berger, Coulomb, CoulombStatic, CoulombViscous, LawFamily};
-use fmm_identify::{Drive, Experiment, ImpactTrial, Known, Machine, Preparation, Sensor, Terms, identify_with};
+use fmm_identify::{Candidate, Drive, Experiment, ImpactTrial, Inquiry, Known, Machine, Preparation, Sensor, Terms};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Channels, Exact, Excitation, Sampling, Scenario, Trajectory, simulate_into};
@@ -55,7 +55,10 @@ fn machine() -> Machine {
 
 /// A finding document of law `F`.
 fn found<F: LawFamily>(machine: &Machine, terms: &Terms, experiments: &[Experiment]) -> Value {
-    serde_json::to_value(identify_with::<F>(machine, terms, experiments).unwrap()).unwrap()
+    serde_json::to_value(
+        Inquiry::of(machine, experiments).candidate(&Candidate::of::<F>().with(terms.clone())).unwrap(),
+    )
+    .unwrap()
 }
 
 /// Ring-downs, driven motions and a blow by one law each, by themselves and together.

@@ -8,12 +8,9 @@ use super::source::{crates, files, first_names, text, words};
 const UNUSED: &[&str] = &[
     "fmm_frf::DampingTerm",
     "fmm_frf::Mode",
-    "fmm_identify::Extension",
     "fmm_identify::ImpactSummary",
-    "fmm_identify::NestedTest",
     "fmm_identify::PredictiveCheck",
     "fmm_identify::RecordSummary",
-    "fmm_identify::Scale",
     "fmm_uq::Evaluation",
     "fmm_uq::Failure",
     "fmm_uq::FailureKind",

@@ -10,8 +10,8 @@ use crate::machine::terms::Term;
 /// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    law: Law,
-    terms: Terms,
+    pub(crate) law: Law,
+    pub(crate) terms: Terms,
 }
 
 /// Makes candidates of families.
@@ -29,11 +29,6 @@ impl Candidate {
     /// The candidate of family `F`, which may be a law of one's own.
     pub const fn of<F: LawFamily>() -> Self {
         Self { law: Law::of::<F>(), terms: Terms::NONE }
-    }
-
-    /// The candidate of a `law` as a value, with `terms` beside it.
-    pub(crate) const fn by(law: Law, terms: Terms) -> Self {
-        Self { law, terms }
     }
 
     /// The same law with `terms` beside it.
@@ -177,17 +172,14 @@ impl Candidate {
         })
     }
 
+    /// The same with static levels fitted.
+    pub(crate) fn with_breakaway(&self) -> Self {
+        Self { law: self.law.with_breakaway(), ..self.clone() }
+    }
+
     pub(crate) fn parameter_count(&self) -> usize {
         let beside = self.terms.iter().count();
         (self.law.parameters.len() + beside).saturating_sub(self.terms.held().count())
-    }
-
-    pub(crate) const fn law(&self) -> &Law {
-        &self.law
-    }
-
-    pub(crate) const fn terms(&self) -> &Terms {
-        &self.terms
     }
 
     /// Name of the law alone.

@@ -116,11 +116,6 @@ impl IdentifyError {
         Self::wrong_record(format!("{subject} must be {needed}, but the record is: {quantity}"))
     }
 
-    /// An estimator that works on velocities only.
-    pub(crate) fn velocity_needed(estimator: &str, quantity: Quantity) -> Self {
-        Self::wrong_record(format!("{estimator} needs a velocity, but the record is: {quantity}"))
-    }
-
     /// The record given as a drive is neither a force nor a motion.
     pub(crate) fn drive(expected: &str, found: &str) -> Self {
         Self::wrong_record(format!("the drive of an experiment must be {expected}, but is: {found}"))

@@ -41,7 +41,8 @@
 //! | How do I get μ? | give a mass or a stiffness, and the normal load, with their uncertainties |
 //! | Which law? | [`search`] tries as many as the record asks for, [`compare`] those given, and both say when it does not decide; [`Candidate`] chooses one by its name |
 //! | How much friction at which speed, before any law? | [`FrictionCurve`], with intervals |
-//! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`identify_with`] and [`Terms`] |
+//! | Damping of the machine beside the law? | known: [`Machine::with_damping`]; to be found: [`Candidate::with`] and [`Terms`] |
+//! | A time limit, threads, options of the solver, a look at every step? | [`Inquiry`] |
 //! | Several records? | give them together: the law and the frequency are shared, initial states and offsets are not |
 //! | An accelerometer? | its record is a ring-down like any other; a filter of the sensor is stated or fitted, [`Sensor`] |
 //! | A shaker, a motor, a moving base? | [`Experiment::driven`] with the measured [`Drive`]; its gain and a delay of the response can be fitted |
@@ -50,13 +51,13 @@
 //! | A static level? | a slow force through the breakaway, [`Experiment::driven`]; a ring-down does not tell it |
 //! | How does damping depend on velocity? | [`fmm_frf::Backbone`]: frequency and damping over the amplitude |
 //! | Friction out of impacts of a hammer? | [`ImpactTrial`], and [`Experiment::impact`] for the motion or [`Experiment::mobility`] for its spectrum |
-//! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`] in [`Candidate::identify`] and [`compare`]; [`Terms`] lists what acts beside friction |
+//! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`] in [`identify`] and [`compare`]; [`Terms`] lists what acts beside friction |
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
 //! | What if mass, stiffness or damping were others? | [`Problem::declared`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
 //! | Which test next? | [`Plan`]: what [`PlannedTest`]s would tell beside what is known, and which set of them is best |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Does value ± k u mislead? | [`Identification::profiles`] |
-//! | What makes it uncertain? | [`Finding::contributions`]: residuals, mass or stiffness, load, gain, other laws |
+//! | What makes it uncertain? | [`Finding::budget`]: residuals, mass or stiffness, load, gain, other laws |
 //! | What is probable, where a bound or a bend makes value ± u wrong? | `Identification::posterior` (feature `sampler`) |
 //! | Are the uncertainties to be trusted? | read the [`warnings`](Identification::warnings): they name what breaks them |
 //!
@@ -130,17 +131,11 @@ pub use experiment::force::{ForceLoop, ForceRecord, Onset, SpeedBin};
 pub use experiment::{
     Drive, Experiment, Experiments, ImpactSummary, ImpactTrial, Offset, Preparation, RecordSummary, Sensor,
 };
-pub use finding::{Contribution, Finding, Origin, Source};
-pub use fmm_model::Estimated;
+pub use finding::{Finding, Origin, Source};
 pub use friction_curve::{FrictionCurve, FrictionLevel};
-pub use identification::{
-    FittedMotion, Identification, Profile, Profiles, Validation, identify, identify_observed, identify_with,
-};
-pub use judgement::{
-    Comparison, Extension, FrictionChange, FrictionOverLoad, LoadVerdict, NestedTest, ScoreTest, Search, compare,
-    compare_observed, search, search_observed,
-};
-pub use machine::{Known, Machine, Scale, Terms};
+pub use identification::{FittedMotion, Identification, Profile, Profiles, Validation};
+pub use judgement::{Comparison, FrictionChange, FrictionOverLoad, Inquiry, ScoreTest, compare, identify, search};
+pub use machine::{Known, Machine, Terms};
 #[cfg(feature = "sampler")]
 pub use posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
 pub use problem::Problem;

@@ -1,4 +1,4 @@
-//! Linear algebra of a few columns: the inverse of their products.
+//! Linear algebra of a few columns: the inverse of their products, and the part of a direction that they can follow.
 
 /// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however
 /// alike they are.
@@ -48,9 +48,46 @@ pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
     (0..order * order).map(|at| element(at / order, at % order)).collect()
 }
 
+/// Columns of J with (JᵀJ)⁻.
+#[derive(Debug, Clone)]
+pub(crate) struct Span {
+    pub(crate) columns: Vec<Vec<f64>>,
+    inverse: Vec<f64>,
+}
+
+impl Span {
+    pub(crate) fn of(columns: Vec<Vec<f64>>) -> Self {
+        Self { inverse: inverse_of_products(&columns), columns }
+    }
+
+    /// The steps (JᵀJ)⁻Jᵀd that follow a direction d best.
+    pub(crate) fn steps(&self, direction: &[f64]) -> Vec<f64> {
+        let product = |column: &Vec<f64>| -> f64 { column.iter().zip(direction).map(|(a, d)| a * d).sum() };
+        let products: Vec<f64> = self.columns.iter().map(product).collect();
+        let rows = self.inverse.chunks(self.columns.len().max(1));
+        rows.map(|row| row.iter().zip(&products).map(|(weight, product)| weight * product).sum()).collect()
+    }
+
+    /// Takes out of `direction` what the columns can follow.
+    pub(crate) fn take_out(&self, direction: &mut [f64]) {
+        for (step, column) in self.steps(direction).iter().zip(&self.columns) {
+            direction.iter_mut().zip(column).for_each(|(d, a)| *d -= step * a);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Three columns in a plane: what they take of a direction is its part in the plane.
+    #[test]
+    fn columns_that_are_alike_take_no_more_than_one() {
+        let columns = vec![vec![1.0, 0.0, 0.0], vec![1e6, 1e6, 0.0], vec![1e6, 1e6 + 1e-3, 0.0]];
+        let mut direction = vec![0.3, -0.2, 0.7];
+        Span::of(columns).take_out(&mut direction);
+        assert!(direction[0].abs() + direction[1].abs() < 1e-9 && (direction[2] - 0.7).abs() < 1e-15, "{direction:?}");
+    }
 
     #[test]
     fn of_independent_columns_it_is_the_inverse() {

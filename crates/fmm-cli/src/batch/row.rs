@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use fmm_fit::EstimateStatus;
 use fmm_identify::{Finding, Identification, Origin, Severity, Source};
 use fmm_record::Record;
+use fmm_uq::Budget;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -223,8 +224,10 @@ pub(super) fn told(found: &Identification) -> Vec<Told> {
         u: finding.uncertainty(),
         degrees_of_freedom: Some(finding.degrees_of_freedom()).filter(|freedom| freedom.is_finite()),
         contributions: finding
-            .contributions()
-            .map(|part| Part { source: part.source.to_string(), u: part.uncertainty })
+            .budget()
+            .iter()
+            .flat_map(Budget::contributions)
+            .map(|part| Part { source: part.input.name().to_owned(), u: part.uncertainty })
             .collect(),
     };
     found.findings().iter().filter(is_of_machine).map(value).collect()

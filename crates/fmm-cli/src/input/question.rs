@@ -6,10 +6,8 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use clap::Args;
-use fmm_fit::{Options, Progress};
-use fmm_identify::{
-    Candidate, Comparison, Experiment, Known, Machine, Search, Sensor, Source, compare_observed, search_observed,
-};
+use fmm_fit::Progress;
+use fmm_identify::{Candidate, Comparison, Experiment, Inquiry, Known, Machine, Sensor, Source};
 use fmm_model::Restoring;
 use fmm_record::Quantity;
 
@@ -250,26 +248,19 @@ impl Question {
         let is_force =
             |decay: &Experiment| decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force);
         let machine = self.machine(decays.iter().any(is_force))?;
-        let options = Options::default();
-        Ok(if candidates.is_empty() {
-            search_observed(&machine, decays, &self.search()?, &options, show)?
-        } else {
-            compare_observed(&machine, decays, candidates, &options, show)?
-        })
-    }
-
-    /// The search for a law, where none is named.
-    fn search(&self) -> Result<Search, Box<dyn Error>> {
-        let mut search = Search::default();
+        let mut inquiry = Inquiry::of(&machine, decays).observed_by(show);
+        if !candidates.is_empty() {
+            return Ok(inquiry.among(candidates)?);
+        }
         for Held { law, name, value } in self.held()? {
-            search = search.holding(law.as_deref(), &name, value);
+            inquiry = inquiry.holding(law.as_deref(), &name, value);
         }
         if let Some(seconds) = self.time_limit {
             let limit =
                 Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
-            search = search.within(limit);
+            inquiry = inquiry.within(limit);
         }
-        Ok(search)
+        Ok(inquiry.search()?)
     }
 }
 

@@ -1,7 +1,8 @@
 //! The budget of a report: where the uncertainty of each finding comes from.
 
-use fmm_identify::{Contribution, Finding, Identification, Source};
+use fmm_identify::{Finding, Identification};
 use fmm_model::Rounded;
+use fmm_uq::{Budget, Contribution};
 
 use crate::page::{optional_cell, row_heading, table, text_cell, words};
 
@@ -10,30 +11,30 @@ const LITTLE: f64 = 5e-4;
 
 /// Contribution of each source to the findings that all records share.
 pub(super) fn budget(preferred: &Identification) -> String {
-    let budgets: Vec<(&Finding, Vec<Contribution>)> = preferred
+    let budgets: Vec<(&Finding, Option<Budget>)> = preferred
         .findings()
         .iter()
         .filter(|finding| !finding.is_of_record())
-        .map(|finding| (finding, finding.contributions().collect()))
+        .map(|finding| (finding, finding.budget()))
         .collect();
     let mut sources = Vec::new();
-    for part in budgets.iter().flat_map(|(_, parts)| parts) {
-        if !sources.contains(&part.source) {
-            sources.push(part.source);
+    for part in budgets.iter().filter_map(|(_, budget)| budget.as_ref()).flat_map(Budget::contributions) {
+        if !sources.contains(&part.input.name()) {
+            sources.push(part.input.name());
         }
     }
     if sources.is_empty() {
         return "<p>No finding has an uncertainty.</p>\n".to_owned();
     }
-    let row = |(finding, parts): &(&Finding, Vec<Contribution>)| {
+    let row = |(finding, budget): &(&Finding, Option<Budget>)| {
         let parameter = finding.parameter();
         let u = of_size(finding.uncertainty()?);
         let heads = [row_heading(&words(parameter.name())), text_cell(&u), text_cell(parameter.unit())];
-        let part = |source: &Source| optional_cell(parts.iter().find(|part| part.source == *source).map(text));
+        let parts = || budget.iter().flat_map(Budget::contributions);
+        let part = |source: &&str| optional_cell(parts().find(|part| part.input.name() == *source).as_ref().map(text));
         Some(heads.into_iter().chain(sources.iter().map(part)).collect())
     };
-    let names: Vec<String> = sources.iter().map(ToString::to_string).collect();
-    let headings: Vec<&str> = ["quantity", "u", "unit"].into_iter().chain(names.iter().map(String::as_str)).collect();
+    let headings: Vec<&str> = ["quantity", "u", "unit"].into_iter().chain(sources.iter().copied()).collect();
     format!(
         "<p>What each source alone makes of u, and its share of u². Residuals count with the degrees of freedom that they have; what \
          was given counts as known, so that ν of the whole follows by Welch and Satterthwaite (JCGM 100:2008, clauses 5.1 and G.4.1). \
@@ -43,7 +44,7 @@ pub(super) fn budget(preferred: &Identification) -> String {
 }
 
 /// u and share of a contribution.
-fn text(part: &Contribution) -> String {
+fn text(part: &Contribution<'_>) -> String {
     let share = 100.0 * part.share;
     let share = match part.share {
         little if little < LITTLE => "below 0.1 %".to_owned(),

@@ -15,7 +15,7 @@ law_family! {
     ///
     /// | symbol | field | unit | meaning |
     /// |---|---|---|---|
-    /// | μ₀ | `floor` | 1 | coefficient at large speed |
+    /// | μ₀ | `coefficient` | 1 | coefficient at large speed |
     /// | μ₁ | `excess` | 1 | how far the coefficient at zero speed lies above it |
     /// | α | `decay` | s/m | inverse of the speed over which the excess falls |
     ///
@@ -36,12 +36,12 @@ law_family! {
     /// E. J. Berger, "Friction modeling for dynamic system simulation", Applied Mechanics Reviews 55 (2002) 535,
     /// doi 10.1115/1.1501080.
     pub struct Berger, "berger", sliding {
-        floor: LawParameter::level("coefficient", "μ₀").typically(0.7),
+        coefficient: LawParameter::level("coefficient", "μ₀").typically(0.7),
         excess: LawParameter::not_negative("excess_coefficient", "μ₁", "1", Role::Excess).typically(0.6),
         decay: LawParameter::not_negative("decay", "α", "s/m", Role::Shape).typically(3.0),
     }
 
-    /// Coefficient `floor` μ₀ (1) at large speed, `excess` μ₁ (1) at zero speed and its `decay` α (s/m).
+    /// `coefficient` μ₀ (1) at large speed, `excess` μ₁ (1) at zero speed and its `decay` α (s/m).
     ///
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter is negative or not finite.
@@ -52,11 +52,11 @@ law_family! {
 
 impl<D: Scalar> SlidingLaw<D> for Berger<D> {
     fn coefficient(&self, speed: D) -> D {
-        self.floor + self.excess * (-(self.decay * speed)).exp()
+        self.coefficient + self.excess * (-(self.decay * speed)).exp()
     }
 
     fn breakaway(&self) -> D {
-        self.floor + self.excess
+        self.coefficient + self.excess
     }
 }
 
@@ -72,7 +72,7 @@ law_family! {
     /// | μ_s | `breakaway` | 1 | coefficient at zero speed and at breakaway |
     /// | δ | `decay` | s/m | inverse of the speed at which the coefficient has halved |
     ///
-    /// There is no Coulomb floor: the coefficient falls to zero. With δ = 0 this is [`Coulomb`](crate::Coulomb).
+    /// There is no Coulomb level: the coefficient falls to zero. With δ = 0 this is [`Coulomb`](crate::Coulomb).
     ///
     /// # References
     /// R. I. Leine, D. H. van Campen, A. de Kraker, L. van den Steen, "Stick-slip vibrations induced by alternate
@@ -102,7 +102,7 @@ impl<D: Scalar> SlidingLaw<D> for Hyperbolic<D> {
 }
 
 law_family! {
-    /// Friction that grows with a power of the speed, above a Coulomb floor.
+    /// Friction that grows with a power of the speed, above a Coulomb level.
     ///
     /// ```text
     /// F = N (a vᵖ + b)                                               (thesis Eq. 7.2)
@@ -110,9 +110,9 @@ law_family! {
     ///
     /// | symbol | field | unit | meaning |
     /// |---|---|---|---|
-    /// | a | `amplitude` | (s/m)ᵖ | coefficient above the floor at 1 m/s |
+    /// | a | `amplitude` | (s/m)ᵖ | coefficient above the level at 1 m/s |
     /// | p | `exponent` | 1 | between 0 and 1 |
-    /// | b | `floor` | 1 | coefficient in the limit of zero speed and at breakaway |
+    /// | b | `coefficient` | 1 | coefficient in the limit of zero speed and at breakaway |
     ///
     /// The thesis fits this curve to coefficients averaged over whole tests, not to an instantaneous law. As a law it
     /// creeps for ever: a load L a little above b N moves at ((L/N − b)/a)^(1/p). With p = 1 it is
@@ -126,10 +126,10 @@ law_family! {
             Parameter::new("exponent", "p", "1").bounded(Bounds::POSITIVE.at_most(1.0)),
             Role::Shape,
         ),
-        floor: LawParameter::level("coefficient", "b").typically(0.6),
+        coefficient: LawParameter::level("coefficient", "b").typically(0.6),
     }
 
-    /// `amplitude` a ((s/m)ᵖ) and `exponent` p (1) of the power and its `floor` b (1).
+    /// `amplitude` a ((s/m)ᵖ) and `exponent` p (1) of the power and its `coefficient` b (1).
     ///
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite.
@@ -140,11 +140,11 @@ law_family! {
 
 impl<D: Scalar> SlidingLaw<D> for PowerLaw<D> {
     fn coefficient(&self, speed: D) -> D {
-        self.amplitude * power(speed, self.exponent) + self.floor
+        self.amplitude * power(speed, self.exponent) + self.coefficient
     }
 
     fn breakaway(&self) -> D {
-        self.floor
+        self.coefficient
     }
 }
 
@@ -154,7 +154,7 @@ mod tests {
 
     /// The curve that the thesis fits, at 1 m/s and at 2⁻¹⁰ m/s, where the power is 2^(−2.116).
     #[test]
-    fn rises_as_a_power_from_its_floor() {
+    fn rises_as_a_power_from_its_level() {
         let law = PowerLaw::new(0.311, 0.2116, 0.031_48).unwrap();
         assert_eq!((law.coefficient(0.0), law.breakaway()), (0.031_48, 0.031_48));
         assert!((law.coefficient(1.0) - 0.342_48).abs() < 1e-16);

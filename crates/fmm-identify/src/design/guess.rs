@@ -10,11 +10,10 @@ use crate::design::local;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::identification::Identification;
-use crate::law::Law;
 use crate::law::dimension::is_force;
 use crate::law::naming::Units;
+use crate::machine::Machine;
 use crate::machine::Scale;
-use crate::machine::{Machine, Terms};
 
 /// Knowledge before the tests: the machine, the law with guessed values, and earlier measurements.
 ///
@@ -30,8 +29,8 @@ use crate::machine::{Machine, Terms};
 #[derive(Debug, Clone)]
 pub struct Guess {
     pub(crate) machine: Machine,
-    pub(crate) law: Law,
-    pub(crate) terms: Terms,
+    /// The law with its static levels fitted, and its terms.
+    pub(crate) model: Candidate,
     /// Unit of positions.
     pub(crate) position: Unit,
     /// The parameters that all tests share, in the order of a fit, static levels among them, and their values.
@@ -61,7 +60,8 @@ impl Guess {
         terms: &[(&str, f64)],
     ) -> Result<Self, IdentifyError> {
         ModelError::require_positive("natural frequency", frequency, "Hz")?;
-        let family = candidate.law().with_breakaway();
+        let model = candidate.with_breakaway();
+        let family = model.law;
         if law.len() != family.parameters.len() {
             let names: Vec<&str> = family.parameters.iter().map(|one| one.parameter().name()).collect();
             return Err(IdentifyError::missing(format!(
@@ -82,8 +82,8 @@ impl Guess {
             }
             _ => (vec![frequency], load / per_mass_of_unit),
         };
-        candidate.terms().require_vibration()?;
-        let known: Vec<Parameter> = candidate.terms().parameters(&Unit::of("m")).collect();
+        candidate.terms.require_vibration()?;
+        let known: Vec<Parameter> = candidate.terms.parameters(&Unit::of("m")).collect();
         let named = known.iter().map(|parameter| {
             let name = parameter.name();
             let plain = name.strip_suffix("_per_mass");
@@ -92,7 +92,7 @@ impl Guess {
             if let (Some(plain), Some(_), Some(_)) = (plain, exactly, by_mass) {
                 return Err(IdentifyError::contradiction(format!("{name} is given twice, once as {plain}")));
             }
-            let held = || candidate.terms().held().find(|(held, _)| *held == name).map(|(_, value)| value);
+            let held = || candidate.terms.held().find(|(held, _)| *held == name).map(|(_, value)| value);
             exactly.or_else(|| by_mass.map(|(_, value)| value / per_mass_of_unit)).or_else(held).ok_or_else(|| {
                 IdentifyError::missing(format!("{} has no value for {name}: give one", candidate.name()))
             })
@@ -130,31 +130,30 @@ impl Guess {
             role if is_force(role) => value * to_fitted,
             _ => *value,
         }));
-        Self::of(machine, family, candidate.terms().clone(), Unit::of("m"), values)
+        Self::of(machine, model, Unit::of("m"), values)
     }
 
     /// Result of a pilot experiment: values, their uncertainty, and the information of its `records`, which must be
     /// those of the identification.
     ///
     /// # Errors
-    /// Those of [`Problem::new`](crate::Problem::new), and [`IdentifyError::Simulation`].
+    /// Those of [`Problem::of`](crate::Problem::of), and [`IdentifyError::Simulation`].
     pub fn of_pilot(found: &Identification, records: &[Experiment]) -> Result<Self, IdentifyError> {
-        let (machine, terms) = (*found.machine(), found.terms().clone());
-        let problem = crate::problem::Problem::of(found.family(), machine, terms.clone(), records)?;
-        let layout = problem.quantities();
+        let problem = found.problem(records)?;
+        let layout = &problem.table;
         let position = layout.units.position.clone();
         let shared = layout.shared;
         let of_fit: Vec<(&str, f64)> =
             found.fit().estimates()[..shared].iter().map(|estimate| (estimate.name(), estimate.value())).collect();
-        let family = found.family().with_breakaway();
-        let (_, parameters) = local::layout(family, &machine, &terms, &position, of_fit[0].1)?;
+        let (machine, model) = (*found.machine(), found.fitted.model.with_breakaway());
+        let (_, parameters) = local::layout(&model, &machine, &position, of_fit[0].1)?;
         // A static level that no ring-down determines begins at the sliding one.
         let value = |parameter: &Parameter| {
             of_fit.iter().find(|(name, _)| *name == parameter.name()).map_or(0.0, |(_, value)| *value)
         };
         let values = parameters.iter().map(value).collect();
-        let mut guess = Self::of(machine, family, terms, position, values)?;
-        let deviation = found.fit().residual_standard_deviation().unwrap_or(0.0) * found.inflation();
+        let mut guess = Self::of(machine, model, position, values)?;
+        let deviation = found.fit().residual_standard_deviation().unwrap_or(0.0) * found.covariance.inflation;
         let design = |source| local::design_error(found.family().name, source);
         let information = Information::of_problem(&problem, found.fit().values(), shared).map_err(design)?;
         let information = information.scaled(deviation.powi(-2)).map_err(design)?;
@@ -165,14 +164,8 @@ impl Guess {
         Ok(guess)
     }
 
-    fn of(
-        machine: Machine,
-        law: Law,
-        terms: Terms,
-        position: Unit,
-        mut values: Vec<f64>,
-    ) -> Result<Self, IdentifyError> {
-        let (_, parameters) = local::layout(law, &machine, &terms, &position, values[0])?;
+    fn of(machine: Machine, model: Candidate, position: Unit, mut values: Vec<f64>) -> Result<Self, IdentifyError> {
+        let (_, parameters) = local::layout(&model, &machine, &position, values[0])?;
         for (parameter, value) in parameters.iter().zip(&mut values) {
             let bounds = parameter.bounds();
             if bounds.is_fixed() {
@@ -188,7 +181,7 @@ impl Guess {
             }
         }
         let nothing = Information::none(parameters.len());
-        Ok(Self { machine, law, terms, position, parameters, values, measured: nothing.clone(), spread: nothing })
+        Ok(Self { machine, model, position, parameters, values, measured: nothing.clone(), spread: nothing })
     }
 
     /// The same with values that may be off by these standard uncertainties, each by the name that a fit gives to the
@@ -199,8 +192,10 @@ impl Guess {
     pub fn within(mut self, uncertainties: &[(&str, f64)]) -> Result<Self, IdentifyError> {
         for (name, u) in uncertainties {
             let place = self.place(name)?;
-            self.spread =
-                self.spread.with_known(place, *u).map_err(|source| local::design_error(self.law.name, source))?;
+            self.spread = self
+                .spread
+                .with_known(place, *u)
+                .map_err(|source| local::design_error(self.model.law_name(), source))?;
         }
         Ok(self)
     }

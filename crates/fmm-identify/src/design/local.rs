@@ -7,31 +7,31 @@ use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Scalar, Unit};
 use fmm_record::{Quantity, Record};
 
+use crate::candidate::Candidate;
 use crate::design::inputs::{Input, Inputs};
 use crate::design::planned_test::{Load, Motion};
 use crate::design::{Guess, PlannedTest};
 use crate::error::IdentifyError;
 use crate::experiment::{Drive, Experiment};
+use crate::law::DIRECTIONS;
 use crate::law::dimension::is_force;
-use crate::law::{DIRECTIONS, Law};
 use crate::machine::Scale;
 use crate::machine::terms::Term;
-use crate::machine::{Known, Machine, Terms};
+use crate::machine::{Known, Machine};
 use crate::problem::Problem;
 use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 
 /// Layout and parameters that all tests share, static levels among them.
 pub(crate) fn layout(
-    law: Law,
+    model: &Candidate,
     machine: &Machine,
-    terms: &Terms,
     position: &Unit,
     frequency: f64,
 ) -> Result<(Table, Vec<Parameter>), IdentifyError> {
     let blank = Record::new(0.0, 1.0, vec![0.0; 2], Quantity::Displacement, position.to_string())?;
     let blank = Experiment::planned(blank, None, false, frequency, 1.0, None);
     // What is known to an uncertainty is an input of a plan.
-    let (layout, mut parameters) = Table::of(law.with_breakaway(), &machine.exactly(), terms.clone(), &[blank])?;
+    let (layout, mut parameters) = Table::of(model, &machine.exactly(), &[blank])?;
     parameters.truncate(layout.shared);
     Ok((layout, parameters))
 }
@@ -190,15 +190,16 @@ impl Local<'_> {
 
     /// Information of `test` about the shared parameters and the inputs, in this order.
     pub(crate) fn information(&self, test: &PlannedTest) -> Result<Information, IdentifyError> {
-        let name = self.guess.law.name;
+        let name = self.guess.model.law_name();
         let failed = |source| design_error(name, source);
         let shared: Vec<f64> = self.of_test(test, 0);
         let frequency = if self.layout.is_per_mass() { shared[0] } else { (shared[1] / shared[0]).sqrt() / (2.0 * PI) };
         let experiments = [self.experiment(test, frequency)?];
-        let law = self.guess.law.with_held_breakaway();
         let machine = self.machine(test, &self.guess.machine)?;
-        let own = Problem::of(law, machine, self.guess.terms.clone(), &experiments)?.without_prior();
-        let of_problem = own.quantities().shared;
+        let model = &self.guess.model;
+        let model = Candidate { law: model.law.with_held_breakaway(), ..model.clone() };
+        let own = Problem::of(&model, machine, &experiments)?.without_prior();
+        let of_problem = own.table.shared;
         let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
         // Each shared row of the problem is one of the guess, or something known of the machine.
         let input = |row: &Row| match row.place {
@@ -206,7 +207,7 @@ impl Local<'_> {
             _ => self.inputs.find(Input::Scale),
         };
         let rows: Vec<(Option<usize>, &Row)> =
-            own.parameters()[..of_problem].iter().map(place).zip(&own.quantities().rows).collect();
+            own.parameters()[..of_problem].iter().map(place).zip(&own.table.rows).collect();
         let state = |parameter: &Parameter| match (parameter.name(), &test.motion) {
             ("initial_position", Motion::Released(position)) => *position,
             ("force_gain" | "base_gain", _) => 1.0,

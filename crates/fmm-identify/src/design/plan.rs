@@ -75,10 +75,10 @@ impl Plan {
         }
         let inputs = Inputs::of(&guess.machine, &tests);
         let frequency = guess.values[0];
-        let (layout, _) = local::layout(guess.law, &guess.machine, &guess.terms, &guess.position, frequency)?;
+        let (layout, _) = local::layout(&guess.model, &guess.machine, &guess.position, frequency)?;
         let shared = guess.parameters.len();
         let order = shared + inputs.len();
-        let failed = |source| local::design_error(guess.law.name, source);
+        let failed = |source| local::design_error(guess.model.law_name(), source);
         let embedded: Vec<f64> = (0..shared * order).map(|at| f64::from(at / order == at % order)).collect();
         let mut known = guess.measured.transformed(&embedded).map_err(failed)?;
         for place in shared..order {
@@ -137,7 +137,7 @@ impl Plan {
                 let allowed = format!("below {}, the number of tests", self.tests.len());
                 return Err(IdentifyError::not_allowed("the place of a test", *place as f64, &allowed));
             };
-            information.add(of_test).map_err(|source| local::design_error(self.guess.law.name, source))?;
+            information.add(of_test).map_err(|source| local::design_error(self.guess.model.law_name(), source))?;
         }
         Ok(information)
     }
@@ -247,7 +247,7 @@ impl Plan {
             Aim::Finding(_) | Aim::MeanVariance => DesignCriterion::MeanVariance,
         };
         let search = cases.and_then(|cases| DesignSearch::new(cases, criterion));
-        search.map_err(|source| local::design_error(self.guess.law.name, source))
+        search.map_err(|source| local::design_error(self.guess.model.law_name(), source))
     }
 
     /// The best set of this many tests at the guess; a test may be in it more than once.

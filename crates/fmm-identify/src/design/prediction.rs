@@ -40,7 +40,7 @@ impl DesignPrediction {
         quantities: Vec<Quantity>,
         information: Information,
     ) -> Result<Self, IdentifyError> {
-        let law = guess.law.name;
+        let law = guess.model.law_name();
         let failed = |source| local::design_error(law, source);
         let mut findings = Vec::with_capacity(quantities.len());
         for quantity in &quantities {

@@ -108,12 +108,8 @@ pub(super) fn jumps(crossings: &[f64], noise: f64, guess: &FirstGuess, velocity:
     // Of a velocity that was integrated over about a period.
     let uncertain = noise * (2.0 * half_period * velocity.interval()).sqrt();
     let range = |(turn, time): (usize, f64)| {
-        let amplitude = guess
-            .amplitudes()
-            .get(turn.saturating_sub(1))
-            .or(guess.amplitudes().last())
-            .copied()
-            .unwrap_or(f64::INFINITY);
+        let amplitude = guess.amplitudes.get(turn.saturating_sub(1)).or(guess.amplitudes.last());
+        let amplitude = amplitude.copied().unwrap_or(f64::INFINITY);
         let time_uncertain = (uncertain / (angular * amplitude)).min(0.1 * half_period);
         let reach = SAMPLES + DEVIATIONS * time_uncertain * velocity.rate();
         let place = (time - velocity.start()) * velocity.rate();

@@ -18,9 +18,9 @@ pub struct Drive {
     record: Record,
     kind: Kind,
     gain_uncertainty: f64,
-    calibration_uncertainty: f64,
+    pub(crate) calibration_uncertainty: f64,
     longest_delay: f64,
-    delay_uncertainty: Option<f64>,
+    pub(crate) delay_uncertainty: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,16 +120,6 @@ impl Drive {
     /// Relative standard uncertainty of the gain of its channel (1), its calibration included.
     pub fn gain_uncertainty(&self) -> f64 {
         self.gain_uncertainty.hypot(self.calibration_uncertainty)
-    }
-
-    /// The part of it that all experiments share (1).
-    pub(crate) fn calibration_uncertainty(&self) -> f64 {
-        self.calibration_uncertainty
-    }
-
-    /// Standard uncertainty of its delay (s); `None` if nothing is known of it.
-    pub(crate) fn delay_uncertainty(&self) -> Option<f64> {
-        self.delay_uncertainty
     }
 
     /// The longest delay (s) that is fitted; 0 if none is.

@@ -10,7 +10,7 @@ use super::{Drive, Driven, Experiment, ring_down, usable};
 use crate::error::IdentifyError;
 use crate::experiment::first_guess::{Dissipation, FirstGuess};
 use crate::experiment::{Offset, Preparation, RecordSummary};
-use crate::linear_algebra::inverse_of_products;
+use crate::linear_algebra::Span;
 
 impl Experiment {
     /// A driven motion: the `response` of the machine to `drive`, both on one time axis. The drive must be known during
@@ -248,12 +248,7 @@ fn solved(columns: &[Vec<f64>; 6], tells_mass: bool) -> [f64; 5] {
     } else {
         columns[5].iter().zip(&columns[0]).map(|(force, inertia)| force - inertia).collect()
     };
-    let inverse = inverse_of_products(unknowns);
-    let order = unknowns.len();
-    let products: Vec<f64> = unknowns.iter().map(|column| column.iter().zip(&rest).map(|(a, b)| a * b).sum()).collect();
     let mut found = [1.0; 5];
-    for i in 0..order {
-        found[known + i] = (0..order).map(|j| inverse[i * order + j] * products[j]).sum();
-    }
+    found[known..].copy_from_slice(&Span::of(unknowns.to_vec()).steps(&rest));
     found
 }

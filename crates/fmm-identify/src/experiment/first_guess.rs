@@ -21,7 +21,7 @@ pub(crate) struct FirstGuess {
     /// Centre of the record, in its unit.
     offset: f64,
     /// Amplitude of each half swing, in the unit of the record.
-    amplitudes: Vec<f64>,
+    pub(crate) amplitudes: Vec<f64>,
     /// Time (s) and value of the first extremum, and value of the second.
     first: (f64, f64, f64),
     quantity: Quantity,
@@ -85,11 +85,6 @@ impl FirstGuess {
     pub(crate) fn of_driven(frequency: f64, offset: f64, amplitude: f64, first: f64, quantity: Quantity) -> Self {
         let (angular, amplitudes) = (2.0 * PI * frequency, vec![amplitude]);
         Self { angular, offset, amplitudes, first: (0.0, first, 2.0 * offset - first), quantity }
-    }
-
-    /// Amplitudes of the half swings, in the unit of the record.
-    pub(crate) fn amplitudes(&self) -> &[f64] {
-        &self.amplitudes
     }
 
     /// Frequency of the damped vibration (Hz).

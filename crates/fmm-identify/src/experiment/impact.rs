@@ -1,10 +1,8 @@
 //! Impact: the free motion after a measured impact of a hammer.
 
-use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fmm_frf::{SingleDegreeOfFreedom, friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
 use fmm_record::{Quantity, Record};
 
 use super::{Experiment, FEWEST_SAMPLES};
@@ -12,7 +10,6 @@ use crate::error::IdentifyError;
 use crate::experiment::lines::Lines;
 use crate::experiment::ring_down;
 use crate::experiment::{Drive, ImpactTrial, Offset, Preparation};
-use crate::machine::{Machine, Scale};
 
 /// Band of a mobility unless one is given, in natural frequencies.
 const BAND: (f64, f64) = (0.5, 2.0);
@@ -55,7 +52,7 @@ impl Experiment {
     /// # Errors
     /// [`IdentifyError::TooFew`] if contact leaves too little of the motion.
     pub fn impact(trial: &ImpactTrial) -> Result<Self, IdentifyError> {
-        let hits = trial.hits().iter().map(|hit| hit.start..hit.end + 1);
+        let hits = trial.hits.iter().map(|hit| hit.start..hit.end + 1);
         Self::of_trial(trial, Offset::Fitted)?.using(ring_down::without(trial.motion().len(), hits))
     }
 
@@ -107,48 +104,5 @@ impl Experiment {
             return Err(IdentifyError::too_short(self.summary.samples, FEWEST_SAMPLES));
         }
         Ok(self)
-    }
-}
-
-impl ImpactTrial {
-    /// The lines of its spectrum within `band` (Hz).
-    fn lines(&self, band: (f64, f64)) -> Result<Lines, IdentifyError> {
-        Lines::new(self.velocity().len(), self.summary().rate, band)
-    }
-
-    /// Height (m/N) of the peak of its receptance within `band` (Hz). Of a record that ends before the motion it is too
-    /// low.
-    ///
-    /// # Errors
-    /// [`IdentifyError::NotSeen`] for a band without a line.
-    pub fn peak_receptance(&self, band: (f64, f64)) -> Result<f64, IdentifyError> {
-        let lines = self.lines(band)?;
-        let force = lines.transform_short(self.force());
-        let mut velocity = vec![0.0; lines.rows()];
-        let failed = |error| IdentifyError::simulation("the receptance", error);
-        lines.transform(&self.velocity()[self.begin()..], &mut velocity).map_err(failed)?;
-        let size = |pair: &[f64]| pair[0].hypot(pair[1]);
-        let mobilities = velocity.chunks_exact(2).zip(force.chunks_exact(2));
-        let receptances = mobilities.zip(lines.frequencies()).map(|((v, f), at)| size(v) / (size(f) * TAU * at));
-        Ok(receptances.filter(|receptance| receptance.is_finite()).fold(0.0, f64::max))
-    }
-
-    /// Friction force (N) that the closed form of [`friction_force_of_viscous_coulomb_impact`] makes of the receptance
-    /// peak on a `machine` of known mass and stiffness, within half to twice its frequency; `None` for another machine,
-    /// or a peak that is higher than the damping alone allows.
-    ///
-    /// It takes friction as independent of velocity, and the record as long enough for the motion to end. With that it
-    /// is good to 0.5 % and some more between lines that miss the peak.
-    pub fn closed_form(&self, machine: &Machine) -> Option<f64> {
-        let Scale::MassAndStiffness(mass, stiffness) = machine.scale() else { return None };
-        let impulse = self.summary().impulse.value.abs();
-        let damping = machine.damping().map_or(0.0, |damping| damping.value());
-        let machine = SingleDegreeOfFreedom::new(mass.value(), damping, stiffness.value()).ok()?;
-        let omega = machine.natural_angular_frequency();
-        let peak = self.peak_receptance((BAND.0 * omega / TAU, BAND.1 * omega / TAU)).ok()?;
-        match damping {
-            0.0 => friction_force_of_coulomb_impact(impulse, mass.value(), omega, peak).ok(),
-            _ => friction_force_of_viscous_coulomb_impact(impulse, &machine, peak).ok(),
-        }
     }
 }

@@ -48,7 +48,8 @@ pub struct ImpactTrial {
     interval: f64,
     velocity: Vec<f64>,
     force: Arc<[f64]>,
-    hits: Vec<Range<usize>>,
+    /// Indices within the force of the samples in which the hammer is in contact.
+    pub(crate) hits: Vec<Range<usize>>,
     begin: usize,
     end: usize,
     calibration_uncertainty: f64,
@@ -210,18 +211,16 @@ impl ImpactTrial {
     pub fn interval(&self) -> f64 {
         self.interval
     }
-
-    /// Indices within the force of the samples in which the hammer is in contact.
-    pub(crate) fn hits(&self) -> &[Range<usize>] {
-        &self.hits
-    }
 }
 
 /// Refuses records other than a force and a velocity in SI units, sampled at the same times.
 fn require_together(force: &Record, velocity: &Record) -> Result<(), IdentifyError> {
     Channel::Force.require(force, Quantity::Force, force.rate())?;
     if velocity.quantity() != Quantity::Velocity {
-        return Err(IdentifyError::velocity_needed("the fit of impacts", velocity.quantity()));
+        return Err(IdentifyError::wrong_record(format!(
+            "the fit of impacts needs a velocity, but the record is: {}",
+            velocity.quantity()
+        )));
     }
     for (channel, record, expected) in [(Channel::Force, force, "N"), (Channel::Response, velocity, "m/s")] {
         if record.unit() != expected {

@@ -100,18 +100,19 @@ where
 pub struct Experiment {
     record: Record,
     kept: Vec<Range<usize>>,
-    guess: FirstGuess,
+    pub(crate) guess: FirstGuess,
     peaks: Vec<(f64, f64)>,
-    nuisances: Vec<Nuisance>,
-    /// The shape of each of them at every sample.
-    shapes: Vec<Vec<f64>>,
+    /// The disturbances that are fitted beside the motion.
+    pub(crate) nuisances: Vec<Nuisance>,
+    /// The shape (1) of each of them at every sample.
+    pub(crate) shapes: Vec<Vec<f64>>,
     summary: RecordSummary,
     sensor: Sensor,
     /// Normal load over that of the machine.
     load_factor: f64,
     driven: Option<Driven>,
     /// The impact that it begins with.
-    impact: Option<ImpactSummary>,
+    pub(crate) impact: Option<ImpactSummary>,
     /// The lines of its spectrum that are compared in place of its samples.
     lines: Option<Arc<Lines>>,
 }
@@ -215,11 +216,6 @@ impl Experiment {
         self.drive().is_some_and(Drive::is_force)
     }
 
-    /// The impact that it begins with.
-    pub fn impact_summary(&self) -> Option<&ImpactSummary> {
-        self.impact.as_ref()
-    }
-
     /// The lines of its spectrum that are compared; `None` where its samples are.
     pub(crate) fn lines(&self) -> Option<&Lines> {
         self.lines.as_deref()
@@ -292,19 +288,9 @@ impl Experiment {
         self
     }
 
-    /// The disturbances that are fitted beside the motion.
-    pub(crate) fn nuisances(&self) -> &[Nuisance] {
-        &self.nuisances
-    }
-
     /// True if a slow drift is among them.
     pub(crate) fn drifts(&self) -> bool {
         self.nuisances.iter().any(|part| matches!(part, Nuisance::Drift(_)))
-    }
-
-    /// The shape of each of them (1) at every sample.
-    pub(crate) fn shapes(&self) -> &[Vec<f64>] {
-        &self.shapes
     }
 
     /// The part of the record that is used, as it was measured.
@@ -431,25 +417,16 @@ impl Experiment {
     pub(crate) fn natural_frequency(&self, dissipation: Dissipation, machine: &Machine) -> f64 {
         let frequency = self.guess.natural_frequency(dissipation);
         let Restoring::Sine { length } = machine.restoring() else { return frequency };
-        let amplitudes = self.guess.amplitudes();
+        let amplitudes = &self.guess.amplitudes;
         let square = amplitudes.iter().map(|a| a * a).sum::<f64>() / amplitudes.len().max(1) as f64;
         let unit = self.scales().0 / amplitudes[0] / length;
         frequency * (1.0 + square * unit * unit / 16.0)
-    }
-
-    pub(crate) fn guess(&self) -> &FirstGuess {
-        &self.guess
     }
 
     /// Standard deviation of the part of the record that no model fits: white noise and the rounding of the converter,
     /// in the unit of the record.
     pub(crate) fn white_noise(&self) -> f64 {
         self.summary.noise.hypot(self.summary.resolution.unwrap_or(0.0) / 12f64.sqrt())
-    }
-
-    /// The offset, if it is held.
-    pub(crate) fn fixed_offset(&self) -> Option<f64> {
-        self.summary.held_offset
     }
 
     /// Two octaves either way of what the crossings of a ring-down show: wide enough for any law, and no fit that

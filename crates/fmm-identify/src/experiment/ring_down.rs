@@ -96,7 +96,7 @@ impl Experiment {
             kept = kept.into_iter().map(|range| range.start..range.end.min(last.max(0.0) as usize)).collect();
             kept.retain(|range| range.start < range.end);
         }
-        let amplitudes = guess.amplitudes();
+        let amplitudes = &guess.amplitudes;
         let in_record = if is_acceleration { 2.0 * PI * guess.frequency() } else { 1.0 };
         let summary = RecordSummary {
             from: record.start(),

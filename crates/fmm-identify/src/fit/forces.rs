@@ -7,7 +7,7 @@ use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
 use crate::fit::stages::Observer;
 use crate::law::dimension::{Scales, is_force};
-use crate::linear_algebra::inverse_of_products;
+use crate::linear_algebra::Span;
 use crate::problem::Problem;
 use crate::problem::force::ForceProblem;
 use crate::residuals::structure::ResidualStructure;
@@ -35,10 +35,7 @@ pub(crate) fn fit_forces(
     let options = options.clone().with_max_iterations(options.max_iterations().min(MOST_ITERATIONS));
     let beginnings: Option<Vec<ForceRecord>> = records.iter().map(ForceRecord::beginning).collect();
     let begun = match &beginnings {
-        Some(beginnings) => {
-            let terms = problem.quantities().terms.clone();
-            Some(Problem::of(*law, *problem.machine(), terms, beginnings)?)
-        }
+        Some(beginnings) => Some(Problem::of(&problem.candidate(), problem.machine, beginnings)?),
         None => None,
     };
     let begun = begun.as_ref().unwrap_or(problem);
@@ -79,19 +76,19 @@ fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     for sharpness in SHARPNESS.into_iter().take(if has_bends { SHARPNESS.len() } else { 1 }) {
         let mut values: Vec<f64> = law.fitted().map(|parameter| scales(sharpness).typical(law, parameter)).collect();
-        values.resize(forces.parameters().len(), 0.0);
+        values.resize(forces.parameters.len(), 0.0);
         for (place, deflection) in forces.first_deflections() {
             values[place] = deflection;
         }
-        for (value, parameter) in values.iter_mut().zip(forces.parameters()) {
+        for (value, parameter) in values.iter_mut().zip(forces.parameters) {
             *value = parameter.bounds().clamp(*value);
         }
         found.push(levelled(forces, values)?);
     }
     let nearest = |found: &mut Vec<(f64, Vec<f64>)>| found.sort_by(|a, b| a.0.total_cmp(&b.0));
     nearest(&mut found);
-    if let Some(place) = forces.delay().filter(|place| !forces.parameters()[*place].bounds().is_fixed()) {
-        let longest = forces.parameters()[place].bounds().upper();
+    if let Some(place) = forces.forces.delay.filter(|place| !forces.parameters[*place].bounds().is_fixed()) {
+        let longest = forces.parameters[place].bounds().upper();
         // First over all delays, then between those that are looked at: where friction jumps, no derivative leads
         // there.
         for width in [longest, longest / f64::from(DELAYS)] {
@@ -99,7 +96,7 @@ fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
             for step in (-DELAYS..=DELAYS).filter(|step| *step != 0) {
                 let mut values = best.clone();
                 values[place] += width * f64::from(step) / f64::from(DELAYS + 1);
-                if forces.parameters()[place].bounds().contains(values[place]) {
+                if forces.parameters[place].bounds().contains(values[place]) {
                     found.push(levelled(forces, values)?);
                 }
             }
@@ -136,9 +133,9 @@ fn level(forces: &ForceProblem<'_>) -> f64 {
 
 /// The sum of squares, and `values` with all levels by one factor and the shapes set to the best fit.
 fn levelled(forces: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Vec<f64>), EvaluationError> {
-    let first = forces.first_shape();
+    let first = forces.forces.first_shape;
     let (residuals, mut columns) = forces.linear(&values)?;
-    let is_free = |j: usize| !forces.parameters()[j].bounds().is_fixed();
+    let is_free = |j: usize| !forces.parameters[j].bounds().is_fixed();
     let levels: Vec<bool> = forces.law().fitted().map(|parameter| is_proportional(parameter.role())).collect();
     let is_level = |j: &usize| levels[*j] && is_free(*j);
     if !(0..first).any(|j| is_level(&j)) {
@@ -149,26 +146,22 @@ fn levelled(forces: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Vec
             column.fill(0.0);
         }
     }
-    let inverse = inverse_of_products(&columns);
-    let products: Vec<f64> =
-        columns.iter().map(|column| column.iter().zip(&residuals).map(|(a, r)| a * r).sum()).collect();
-    let step = |i: usize| -> f64 {
-        inverse[i * columns.len()..][..columns.len()].iter().zip(&products).map(|(a, b)| a * b).sum()
-    };
+    let span = Span::of(columns);
+    let mut steps = span.steps(&residuals);
     // A level that would vanish is kept in sight.
-    let steps: Vec<f64> =
-        (0..columns.len()).map(|i| if i == 0 { step(i).min(LARGEST_FALL) } else { step(i) }).collect();
+    steps[0] = steps[0].min(LARGEST_FALL);
     for j in (0..first).filter(is_level) {
         values[j] *= 1.0 - steps[0];
     }
     for (value, step) in values[first..].iter_mut().zip(&steps[1..]) {
         *value -= step;
     }
-    for (value, parameter) in values.iter_mut().zip(forces.parameters()) {
+    for (value, parameter) in values.iter_mut().zip(forces.parameters) {
         *value = parameter.bounds().clamp(*value);
     }
-    let left =
-        |row: usize| residuals[row] - columns.iter().zip(&steps).map(|(column, step)| step * column[row]).sum::<f64>();
+    let left = |row: usize| {
+        residuals[row] - span.columns.iter().zip(&steps).map(|(column, step)| step * column[row]).sum::<f64>()
+    };
     Ok(((0..residuals.len()).map(|row| left(row).powi(2)).sum(), values))
 }
 

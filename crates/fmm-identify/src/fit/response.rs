@@ -6,7 +6,7 @@ use fmm_record::Quantity;
 use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::law::along::{Alignment, MeasuredMotion, SampleLocation, locations};
-use crate::linear_algebra::inverse_of_products;
+use crate::linear_algebra::Span;
 use crate::machine::terms::Term;
 use crate::problem::Problem;
 use crate::threads::on_all_threads;
@@ -43,10 +43,9 @@ pub(crate) struct Response<'a> {
     /// Samples of the motion that are compared, and their residuals by the simple law.
     rows: Vec<usize>,
     residuals: Vec<f64>,
-    /// Derivatives by what is beside the law, the places of these parameters among those of the simple fit, and (JᵀJ)⁻.
+    /// Places of what is beside the law among the parameters of the simple fit, and the derivatives by it.
     beside: Vec<usize>,
-    columns: Vec<Vec<f64>>,
-    inverse: Vec<f64>,
+    span: Span,
     /// Parameters of the simple fit.
     values: Vec<f64>,
 }
@@ -55,10 +54,10 @@ impl<'a> Response<'a> {
     /// True if there is one: of one free vibration on a linear spring under a constant load.
     pub(crate) fn exists(problem: &Problem<'_>) -> bool {
         let [decay] = problem.experiments() else { return false };
-        problem.quantities().oscillator == 1
-            && problem.machine().restoring() == Restoring::Linear
+        problem.table.oscillator == 1
+            && problem.machine.restoring() == Restoring::Linear
             && !problem.has_spring()
-            && !problem.quantities().terms.has(Term::Change)
+            && !problem.table.terms.has(Term::Change)
             && decay.drive().is_none()
             && decay.first_corner().is_none()
             && decay.load_factor() == 1.0
@@ -99,7 +98,7 @@ impl<'a> Response<'a> {
         let turns = motion.velocities.windows(2).zip(&motion.positions).map(turn).collect();
         let (step, by_force) = transition(stiffness, damping, stride as f64 * interval);
 
-        let first = simple.quantities().shared;
+        let first = simple.table.shared;
         let beside: Vec<usize> = std::iter::once(0).chain(first..values.len()).collect();
         let whole = simple.columns(values, &beside).ok()?;
         let mut left = vec![0.0; simple.len()];
@@ -108,7 +107,6 @@ impl<'a> Response<'a> {
         let compared: Vec<(usize, usize)> =
             kept.filter(|(_, sample)| sample % stride == 0 && sample / stride < end).collect();
         let thinned = |column: &Vec<f64>| compared.iter().map(|(row, _)| column[*row]).collect::<Vec<_>>();
-        let columns: Vec<Vec<f64>> = whole.iter().map(thinned).collect();
         let mut places_of = Vec::new();
         locations(&motion, 0..end, 0.0, &mut places_of);
         Some(Self {
@@ -124,8 +122,7 @@ impl<'a> Response<'a> {
             rows: compared.iter().map(|(_, sample)| sample / stride).collect(),
             residuals: thinned(&left),
             beside,
-            inverse: inverse_of_products(&columns),
-            columns,
+            span: Span::of(whole.iter().map(thinned).collect()),
             values: values.to_vec(),
         })
     }
@@ -138,7 +135,7 @@ impl<'a> Response<'a> {
             .with_polish_steps(0)
             .with_restarts(0)
             .with_jacobian_check(false);
-        let layout = self.problem.quantities();
+        let layout = &self.problem.table;
         let of_law = layout.oscillator..layout.shared;
         let fits = on_all_threads(starts.iter().collect(), |start| solve(self, &start[of_law.clone()], &options).ok());
         let mut ends: Vec<(f64, Vec<f64>)> = Vec::with_capacity(starts.len());
@@ -158,7 +155,7 @@ impl<'a> Response<'a> {
     /// The values of a fit to the record, of which damping and law have these values.
     fn with_rest(&self, of_law: &[f64]) -> Option<Vec<f64>> {
         let changed = self.changed(of_law).ok()?;
-        let steps = self.steps(&changed);
+        let steps = self.span.steps(&changed);
         let moved = |place: usize| {
             let step = self.beside.iter().position(|beside| *beside == place).map_or(0.0, |at| steps[at]);
             self.values[place] - step
@@ -171,7 +168,7 @@ impl<'a> Response<'a> {
 
     /// Residuals that the record is expected to have, what is beside the law unchanged.
     fn changed(&self, of_law: &[f64]) -> Result<Vec<f64>, EvaluationError> {
-        let layout = self.problem.quantities();
+        let layout = &self.problem.table;
         let law = &layout.family;
         let alignment = Alignment {
             motion: &self.motion,
@@ -217,19 +214,11 @@ impl<'a> Response<'a> {
             _ => state[1],
         }
     }
-
-    /// By how much the parameters beside the law are too large.
-    fn steps(&self, residuals: &[f64]) -> Vec<f64> {
-        let product = |column: &Vec<f64>| -> f64 { column.iter().zip(residuals).map(|(a, r)| a * r).sum() };
-        let products: Vec<f64> = self.columns.iter().map(product).collect();
-        let rows = self.inverse.chunks(self.columns.len().max(1));
-        rows.map(|row| row.iter().zip(&products).map(|(weight, product)| weight * product).sum()).collect()
-    }
 }
 
 impl Residuals for Response<'_> {
     fn parameters(&self) -> &[Parameter] {
-        let layout = self.problem.quantities();
+        let layout = &self.problem.table;
         &self.problem.parameters()[layout.oscillator..layout.shared]
     }
 
@@ -238,11 +227,8 @@ impl Residuals for Response<'_> {
     }
 
     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
-        let changed = self.changed(p)?;
-        residuals.copy_from_slice(&changed);
-        for (step, column) in self.steps(&changed).iter().zip(&self.columns) {
-            residuals.iter_mut().zip(column).for_each(|(residual, a)| *residual -= step * a);
-        }
+        residuals.copy_from_slice(&self.changed(p)?);
+        self.span.take_out(residuals);
         Ok(())
     }
 }
@@ -273,6 +259,7 @@ mod tests {
     use fmm_sim::{Scenario, simulate_into};
 
     use super::*;
+    use crate::candidate::Candidate;
     use crate::experiment::{Experiment, Preparation};
     use crate::machine::Machine;
 
@@ -296,7 +283,7 @@ mod tests {
         let channel = if quantity == Quantity::Velocity { motion.velocity() } else { motion.position() };
         let record = Record::new(0.0, 1e-3, channel.values().to_vec(), quantity, unit).unwrap();
         let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
-        let problem = Problem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<CoulombViscous>(), Machine::per_unit_mass(), &decays).unwrap();
         let values: Vec<f64> = [2.0, TRUTH[0], TRUTH[1], 0.03].into_iter().chain([0.0; 2]).collect();
         let response = Response::of(&problem, &problem, &values).unwrap();
         let same = response.changed(&TRUTH).unwrap();

@@ -8,12 +8,12 @@ use fmm_fit::{Fit, FitError, Options, Outcome, Progress, Residuals, solve_best, 
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::problem::fitted::{Fall, Fitted};
-
 use crate::fit::forces::fit_forces;
 use crate::fit::response::Response;
 use crate::problem::Problem;
+use crate::problem::starts::{Fall, Fitted};
 use crate::residuals::structure::ResidualStructure;
 use crate::threads::on_all_threads;
 
@@ -123,7 +123,7 @@ fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observ
     let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
     let search = few.as_ref().unwrap_or(problem);
     let found = if problem.is_elaborate() && !problem.has_spring() {
-        let simple = Problem::new::<CoulombViscous>(*search.machine(), search.experiments())?;
+        let simple = Problem::of(&Candidate::of::<CoulombViscous>(), search.machine, search.experiments())?;
         let known = fit_simple(&simple, options, observer)?;
         let mut starts = search.continued(&simple, known.values());
         starts.extend(search.starts().into_iter().next());
@@ -150,7 +150,7 @@ fn fit_near(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    let simple = Problem::new::<CoulombViscous>(*problem.machine(), problem.experiments())?;
+    let simple = Problem::of(&Candidate::of::<CoulombViscous>(), problem.machine, problem.experiments())?;
     let mut starts = problem.near(&simple, near.simple.fit.values(), near.falls);
     let beside: Vec<Vec<f64>> =
         near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
@@ -160,7 +160,7 @@ fn fit_near(
         all.extend(beside);
         starts = lowest(problem, all, near.tries);
     }
-    let worse = near.simple.rms_residual().powi(2);
+    let worse = near.simple.fit.sum_of_squares() / near.simple.fit.residuals().len() as f64;
     let (mut is_given_up, mut is_ended) = (false, false);
     let mut observe = |progress: &Progress<'_>, residuals: usize| {
         let is_worse = progress.sum_of_squares() > worse * residuals as f64;
@@ -283,7 +283,7 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
     }
     // Where the period depends on the amplitude, a fit creeps to the whole record unless it begins where one of the
     // beginning has ended.
-    let is_bent = problem.machine().restoring() != Restoring::Linear || problem.has_spring();
+    let is_bent = problem.machine.restoring() != Restoring::Linear || problem.has_spring();
     let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>]| {
         if is_bent {
             fit_of_best(problem, starts, options, observer)

@@ -7,6 +7,7 @@ use fmm_friction::CoulombViscous;
 use fmm_sim::{Channels, Sampling};
 use nalgebra::DVector;
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, scaled};
 use crate::fit::stages::{Begin, fit_begun};
@@ -14,12 +15,10 @@ use crate::friction_curve::levels::{KNOTS, LEVELS, Levels, TOP_SPEED, weights};
 use crate::friction_curve::likelihood::{Likelihood, Linearised};
 use crate::friction_curve::mixture::{Posterior, Prior};
 use crate::friction_curve::rules::{MOST_SAMPLES, MOST_STEPS, SAMPLES_PER_PERIOD, SETTLED};
-use crate::law::Law;
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
 use crate::residuals::noise::ResidualNoise;
-use crate::residuals::rules::EXCESS;
-use crate::residuals::structure::are_correlated;
+use crate::residuals::rules::{CORRELATION_TIME, EXCESS};
 
 /// A fitted friction curve in the units of its problem.
 pub(super) struct CurveFit {
@@ -49,13 +48,13 @@ struct Path {
 impl CurveFit {
     /// The curve that `experiments` on `machine` share, with these terms beside it.
     pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        let simple = Problem::of(Law::of::<CoulombViscous>(), *machine, beside.clone(), experiments)?;
+        let simple = Problem::of(&Candidate::of::<CoulombViscous>().with(beside.clone()), *machine, experiments)?;
         let options = Options::default();
         let line = fit_begun(&simple, Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()))?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         let path = Path::of(&simple, line.values()).map_err(failure)?;
         let top = path.speeds.iter().copied().fold(0.0, f64::max);
-        let (first, shared) = (simple.quantities().law, simple.quantities().shared);
+        let (first, shared) = (simple.table.law, simple.table.shared);
         let [level, slope] = [line.values()[first], line.values()[first + 1]];
         let mean = path.weights(top).map(f64::from);
         let scale: f64 = mean.iter().zip(KNOTS).map(|(weight, s)| weight * (level + slope * s * top)).sum();
@@ -63,7 +62,7 @@ impl CurveFit {
             return Err(IdentifyError::not_seen("the motion loses no energy, so there is no friction over speed"));
         }
         let terms = beside.clone().holding(TOP_SPEED, top)?;
-        let problem = Problem::of(Law::of::<Levels>(), *machine, terms, experiments)?.simulated_roughly();
+        let problem = Problem::of(&Candidate::of::<Levels>().with(terms), *machine, experiments)?.simulated_roughly();
         let mut values = line.values()[..first].to_vec();
         values.extend(KNOTS.map(|s| level + slope * s * top));
         values.push(top);
@@ -82,7 +81,7 @@ impl CurveFit {
         let residual = (near.sum_of_squares() / problem.len() as f64).sqrt();
         let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
         let ratio = residual / expected.fold(f64::MIN_POSITIVE, f64::max);
-        let is_correlated = autocorrelation_time(near.residuals()).is_some_and(are_correlated);
+        let is_correlated = autocorrelation_time(near.residuals()).is_some_and(|time| time > CORRELATION_TIME);
         Ok(Self {
             top,
             scale,
@@ -112,7 +111,7 @@ impl Settled {
     /// for that of the residuals.
     fn of(problem: &Problem<'_>, mut values: Vec<f64>, scale: f64) -> Result<Self, IdentifyError> {
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
-        let levels = problem.quantities().law..problem.quantities().law + LEVELS;
+        let levels = problem.table.law..problem.table.law + LEVELS;
         let (prior, mut noise, mut steps) = (Prior::new(), None, 0);
         loop {
             let near = Linearised::of(problem, &values, levels.start).map_err(failure)?;
@@ -176,7 +175,7 @@ impl Path {
         let (mut speeds, mut lowest) = (Vec::new(), Vec::new());
         for (record, experiment) in problem.experiments().iter().enumerate() {
             let series = experiment.record();
-            let dense = experiment.guess().frequency() * SAMPLES_PER_PERIOD * series.duration();
+            let dense = experiment.guess.frequency() * SAMPLES_PER_PERIOD * series.duration();
             let count = (dense.ceil() as usize).clamp(2, MOST_SAMPLES);
             let sampling = Sampling::uniform(series.duration() / (count - 1) as f64, count)?;
             speeds.extend(problem.velocities(record, values, &sampling)?.into_iter().map(f64::abs));

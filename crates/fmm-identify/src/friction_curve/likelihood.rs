@@ -113,7 +113,7 @@ impl Linearised {
             .map(|((rows, experiment), signal)| Series {
                 rows,
                 signal: Some(signal),
-                period: experiment.record().rate() / experiment.guess().frequency(),
+                period: experiment.record().rate() / experiment.guess.frequency(),
                 columns: &columns,
                 weights: &self.inverse,
                 plateaus: experiment.stays(),
@@ -133,7 +133,7 @@ impl Linearised {
         let order = self.places.len();
         let rank = (0..order).filter(|i| self.inverse[i * (order + 1)] > 0.0).count();
         let freedom = (self.measured as f64 - rank as f64).max(1.0);
-        let variance = (dot(&self.left, &self.left) / freedom).max(problem.noise().powi(2) * LEAST_NOISE);
+        let variance = (dot(&self.left, &self.left) / freedom).max(problem.noise.powi(2) * LEAST_NOISE);
         // Columns of unit length.
         let length = |column: &Vec<f64>| Some(dot(column, column).sqrt()).filter(|length| *length > 0.0).unwrap_or(1.0);
         let scales: Vec<f64> = self.columns.iter().map(length).collect();
@@ -162,7 +162,7 @@ impl Linearised {
         let mut slope = -(weight.transpose() * slopes(0..self.measured));
         let known = self.measured..self.residuals.len();
         if !known.is_empty() {
-            let each = problem.noise().powi(-2);
+            let each = problem.noise.powi(-2);
             precision += DMatrix::from_fn(order, order, |i, j| each * product(known.clone(), i, j));
             slope -= slopes(known) * each;
         }

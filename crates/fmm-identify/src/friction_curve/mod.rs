@@ -112,7 +112,7 @@ impl FrictionCurve {
     /// # Errors
     /// As for [`of`](Self::of), and [`IdentifyError::Contradiction`] for other `experiments` than those of `found`.
     pub fn beside(found: &Identification, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_terms(found.machine(), found.terms().beside_friction(), &found.experiments(experiments)?)
+        Self::with_terms(found.machine(), found.fitted.model.terms.beside_friction(), &found.experiments(experiments)?)
     }
 
     fn with_terms(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
@@ -267,11 +267,11 @@ impl FrictionCurve {
     pub fn by_law(&self, found: &Identification, experiments: &[Experiment]) -> Option<Vec<(f64, f64)>> {
         /// Speeds, closer near rest.
         const POINTS: u32 = 100;
-        let (law, terms, values) = (found.family(), found.terms(), found.fit().values());
-        let (table, _) = Table::of(law, found.machine(), terms.clone(), experiments).ok()?;
+        let (model, values) = (&found.fitted.model, found.fit().values());
+        let (table, _) = Table::of(model, found.machine(), experiments).ok()?;
         let at = |step: u32| {
             let speed = self.speeds[LEVELS - 1] * (f64::from(step) / f64::from(POINTS)).powi(2);
-            Some((speed, self.unit_factor * friction(&table, terms, values, speed, false)?))
+            Some((speed, self.unit_factor * friction(&table, &model.terms, values, speed, false)?))
         };
         (1..=POINTS).map(at).collect()
     }

@@ -37,8 +37,8 @@ impl Identification {
         let [own, theirs] = self.residuals_beside(other);
         let difference: Vec<f64> = own.iter().zip(&theirs).map(|(own, theirs)| own - theirs).collect();
         let rounding = floor / difference.len().max(1) as f64;
-        let variance = (other.noise().variance_along(&difference) * other.spread()).max(rounding);
-        let freedom = 2.0 * other.noise().ordinates_along(&difference);
+        let variance = (other.covariance.noise.variance_along(&difference) * other.spread()).max(rounding);
+        let freedom = 2.0 * other.covariance.noise.ordinates_along(&difference);
         let misfit = if excess > 0.0 && variance > 0.0 { excess / variance } else { 0.0 };
         (misfit, freedom.min(other.fitted.fit.degrees_of_freedom() as f64).max(1.0))
     }

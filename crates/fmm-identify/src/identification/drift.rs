@@ -8,6 +8,7 @@ use crate::experiment::Experiment;
 use crate::experiment::nuisance::{DRIFT, Nuisance};
 use crate::identification::Identification;
 use crate::problem::Problem;
+use crate::problem::tangent::Tangent;
 use crate::residuals::rules::{BETWEEN_HARMONICS, CHANCE_OF_DRIFT, NEAR_NOISE};
 
 /// The experiments with a slow polynomial beside the motion of each whose residuals, those of `found`, hold more of the
@@ -24,10 +25,10 @@ pub(crate) fn with_drift(
     problem: &Problem<'_>,
     decays: &[Experiment],
 ) -> Option<Vec<Experiment>> {
-    if !found.residual_structure().is_noisy() {
+    if !found.structure.is_noisy() {
         return None;
     }
-    let tangent = found.tangent(problem)?;
+    let tangent = Tangent::of(problem, &found.fitted.fit)?;
     let mut any = false;
     let mut drifting = Vec::with_capacity(decays.len());
     for (decay, rows) in decays.iter().zip(problem.row_ranges()) {
@@ -40,13 +41,13 @@ pub(crate) fn with_drift(
         let energy = |shape: &dyn Fn(f64) -> f64| -> Option<f64> {
             let mut direction = vec![0.0; found.fit().residuals().len()];
             direction[rows.clone()].iter_mut().zip(&times).for_each(|(d, time)| *d = shape(*time));
-            tangent.take_out(&mut direction);
+            tangent.span.take_out(&mut direction);
             let square: f64 = direction.iter().map(|d| d * d).sum();
             let product: f64 = direction.iter().zip(found.fit().residuals()).map(|(d, r)| d * r).sum();
             (square > 0.0).then(|| product * product / square)
         };
         let slow: f64 = DRIFT.iter().filter_map(|nuisance| energy(&|time| nuisance.at(time, start, end))).sum();
-        let frequency = decay.guess().frequency();
+        let frequency = decay.guess.frequency();
         let is_sampled = |factor: &&f64| **factor * frequency < 0.5 * decay.record().rate();
         let controls: Vec<&f64> = BETWEEN_HARMONICS.iter().filter(is_sampled).collect();
         let above: f64 = controls
@@ -62,7 +63,7 @@ pub(crate) fn with_drift(
         // What is left must be near the noise, or it is a law that misses something.
         let left = (found.fit().sum_of_squares() - slow).max(0.0) / found.fit().residuals().len() as f64;
         let drifts = above > 0.0
-            && left.sqrt() < NEAR_NOISE * found.residual_structure().noise
+            && left.sqrt() < NEAR_NOISE * found.structure.noise
             && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE_OF_DRIFT);
         any |= drifts;
         drifting.push(if drifts { decay.clone().beside(DRIFT.to_vec()) } else { decay.clone() });
@@ -73,7 +74,7 @@ pub(crate) fn with_drift(
 /// The `decays` with the disturbances that `found` was fitted with, which may be more than they carry.
 pub(crate) fn as_fitted(decays: &[Experiment], disturbances: &[Vec<Nuisance>]) -> Vec<Experiment> {
     let further = |(decay, all): (&Experiment, &Vec<Nuisance>)| {
-        let missing = all.iter().skip(decay.nuisances().len()).copied().collect();
+        let missing = all.iter().skip(decay.nuisances.len()).copied().collect();
         decay.clone().beside(missing)
     };
     decays.iter().zip(disturbances).map(further).collect()

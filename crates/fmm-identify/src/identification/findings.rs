@@ -35,7 +35,7 @@ pub(crate) fn findings(
         findings.push(finding.at_bound(relaxed.map(f64::sqrt), freedom));
     }
     let shared = &fit.values()[..table.shared];
-    let inputs = Inputs { machine, shared, table, gains: [1.0; 2], gain_uncertainty };
+    let inputs = Inputs { machine, shared, table, gain: 1.0, gain_uncertainty };
     for Derived { parameter, value, gradient } in inputs.with_gradients() {
         let (by_shared, by_known) = gradient.split_at(gradient.len() - KNOWN);
         let known: Vec<(Source, f64)> =

@@ -5,7 +5,6 @@ use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 use crate::error::IdentifyError;
 use crate::experiment::force::{ForceRecord, deviation};
 use crate::identification::Identification;
-use crate::problem::Problem;
 use crate::problem::force::ForceProblem;
 use crate::warning::Warning;
 
@@ -13,13 +12,13 @@ use crate::warning::Warning;
 #[derive(Debug, Clone)]
 pub(super) struct ForceResults {
     /// Standard deviation of the forces, in their unit.
-    deviation: f64,
+    pub(super) deviation: f64,
     /// Units of position and of force.
     units: [String; 2],
     /// One flag per residual: it counts.
     counts: Vec<bool>,
     /// Degrees of freedom of all residuals over those of the counting ones (1).
-    spread: f64,
+    pub(super) spread: f64,
 }
 
 /// Agreement of a model with the forces of a record to which it was not fitted.
@@ -49,22 +48,12 @@ impl ForceResults {
         let units = [records[0].position_unit(), records[0].force_unit()].map(str::to_owned);
         Self { deviation: deviation(records), units, counts, spread }
     }
-
-    /// Standard deviation of the forces, in their unit.
-    pub(super) fn deviation(&self) -> f64 {
-        self.deviation
-    }
-
-    /// Degrees of freedom of all residuals over those of the counting ones (1).
-    pub(super) fn spread(&self) -> f64 {
-        self.spread
-    }
 }
 
 impl Warning {
     /// Limits of an `identification` of forces in this `unit`.
     pub(super) fn of_force(identification: &Identification, unit: &str) -> Vec<Self> {
-        let (structure, inflation) = (identification.residual_structure(), identification.inflation());
+        let (structure, inflation) = (identification.structure, identification.covariance.inflation);
         let mut warnings = Vec::new();
         if structure.is_structured() {
             let (residual, noise, unit) = (structure.residual, structure.noise, unit.to_owned());
@@ -116,8 +105,8 @@ impl Identification {
         record.require_units([&forces.units[0], &forces.units[1]])?;
         let (law, fit) = (self.family(), self.fit());
         let failure = |error: EvaluationError| IdentifyError::simulation(law.name, error);
-        let problem = Problem::of(law, self.machine, self.terms().clone(), std::slice::from_ref(record))?;
-        let shared = problem.quantities().shared;
+        let problem = self.problem(std::slice::from_ref(record))?;
+        let shared = problem.table.shared;
         let mut pairs = problem.parameters().iter().zip(fit.estimates()).take(shared);
         if let Some((own, fitted)) = pairs.find(|(own, fitted)| own.name() != fitted.name()) {
             return Err(IdentifyError::wrong_record(format!(
@@ -139,7 +128,7 @@ impl Identification {
         }
         let mut residuals = vec![0.0; problem.len()];
         problem.evaluate(&values, &mut residuals, None).map_err(failure)?;
-        let samples = forces.samples()[0].clone();
+        let samples = forces.forces.samples[0].clone();
         let measured = residuals.iter().zip(&record.forces()[samples.clone()]).zip(forces.counts(&values));
         let predicted = measured.map(|((residual, force), counts)| counts.then_some(residual + force));
         let mut all = vec![None; record.len()];

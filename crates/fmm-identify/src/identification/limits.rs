@@ -21,7 +21,7 @@ const CONTRADICTED: f64 = 3.0;
 impl Warning {
     /// Quantities that the records contradict, of those that were known before a `fit` to `problem`.
     pub(crate) fn of_knowledge<'a>(problem: &'a Problem<'_>, fit: &'a Fit) -> impl Iterator<Item = Self> + 'a {
-        let far = problem.prior().tensions(fit.values()).filter(|(_, distance)| distance.abs() > CONTRADICTED);
+        let far = problem.prior.tensions(fit.values()).filter(|(_, distance)| distance.abs() > CONTRADICTED);
         far.map(|(index, distance)| Self::KnowledgeContradicted {
             parameter: fit.estimates()[index].name().to_owned(),
             distance: distance.abs(),
@@ -38,11 +38,11 @@ impl Warning {
             _ => {}
         }
         for decay in decays {
-            let is_bent = machine.restoring() != Restoring::Linear || identification.terms().has_spring();
+            let is_bent = machine.restoring() != Restoring::Linear || identification.fitted.model.terms.has_spring();
             Self::of_record(decay.summary(), is_bent, &mut warnings);
         }
         for (number, experiment) in (1..).zip(decays) {
-            let Some(impact) = experiment.impact_summary() else { continue };
+            let Some(impact) = &experiment.impact else { continue };
             let friction = identification.finding("friction_force").map(Finding::value);
             let recorded = experiment.record().duration();
             Self::of_impact(number, impact, recorded, friction.filter(|friction| *friction > 0.0), &mut warnings);
@@ -113,13 +113,13 @@ impl Warning {
 
     /// Residuals that are not noise.
     fn of_residuals(identification: &Identification, decays: &[Experiment], warnings: &mut Vec<Self>) {
-        let structure = identification.residual_structure();
+        let structure = identification.structure;
         if structure.is_structured() {
             warnings.push(Self::StructuredResiduals {
                 residual: structure.residual,
                 noise: structure.noise,
                 unit: decays.first().map_or_else(String::new, |decay| decay.record().unit().to_owned()),
-                inflation: identification.inflation(),
+                inflation: identification.covariance.inflation,
             });
         }
     }
@@ -131,15 +131,15 @@ impl Warning {
         if decays.iter().any(Experiment::drifts) {
             warnings.push(Self::Drift);
         }
-        let structure = identification.residual_structure();
+        let structure = identification.structure;
         if !structure.is_noisy() {
             return warnings;
         }
-        if let Some(growth) = identification.noise().growth() {
+        if let Some(growth) = identification.covariance.noise.growth() {
             let share = growth.instantaneous.hypot(growth.by_amplitude);
             warnings.push(Self::GrowingNoise { floor: growth.floor, share, unit: unit() });
         }
-        warnings.extend(structure.coloured_noise(identification.inflation()));
+        warnings.extend(structure.coloured_noise(identification.covariance.inflation));
         warnings
     }
 }

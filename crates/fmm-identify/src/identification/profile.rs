@@ -134,14 +134,14 @@ impl Identification {
     /// and Its Applications", Wiley (1988), ch. 6.
     pub fn profiles(&self, decays: &[Experiment], level: f64) -> Result<Profiles, IdentifyError> {
         let decays = self.experiments(decays)?;
-        let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &decays)?;
+        let problem = self.problem(&decays)?;
         let mut found = Profiles { computed: Vec::new(), left_out: Vec::new(), residual_evaluations: 0 };
-        if !self.residual_structure().is_noisy() {
+        if !self.structure.is_noisy() {
             return Ok(found);
         }
-        for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.quantities().shared) {
+        for (index, estimate) in self.fit().estimates().iter().enumerate().take(problem.table.shared) {
             // Beside what is not determined a value on its bound has no variance either.
-            let is_known = self.covariance().relaxed(index).is_some();
+            let is_known = self.covariance.relaxed(index).is_some();
             if !is_known || matches!(estimate.status(), EstimateStatus::Fixed | EstimateStatus::Undetermined) {
                 continue;
             }
@@ -164,10 +164,10 @@ impl Identification {
     ) -> Result<Profile, FitError> {
         let fit = self.fit();
         let estimate = &fit.estimates()[index];
-        let variance = self.covariance().relaxed(index).ok_or_else(no_variance)?;
+        let variance = self.covariance.relaxed(index).ok_or_else(no_variance)?;
         let plain = fit.relaxed_covariance(index, index).or_else(|| fit.covariance(index, index));
         let (plain, deviation) = (plain.zip(fit.residual_standard_deviation())).ok_or_else(no_variance)?;
-        let degrees_of_freedom = self.covariance().degrees_of_freedom(index);
+        let degrees_of_freedom = self.covariance.degrees_of_freedom(index);
         let residuals =
             ResidualVariance::Effective { variance: variance / plain * deviation * deviation, degrees_of_freedom };
         let left = |used: usize| Options::default().with_max_evaluations(MOST_EVALUATIONS.saturating_sub(used));

@@ -2,18 +2,15 @@
 
 use std::fmt;
 
-use fmm_fit::Options;
 use fmm_friction::{Coulomb, CoulombViscous, LawFamily};
 
 use crate::candidate::Candidate;
-use crate::error::IdentifyError;
 use crate::experiment::{Experiment, reference};
-use crate::fit::stages::{Begin, Observer};
-use crate::identification::{Identification, identify_by};
+use crate::identification::Identification;
 use crate::judgement::rules::{LEAST_CHANGE, SHOWN_CHANGE};
-use crate::machine::Machine;
 use crate::machine::terms::Term;
 use crate::problem::Problem;
+use crate::problem::tangent::Tangent;
 use crate::quantities::table::Place;
 
 /// Change of the friction during the records, for each half cycle, beside a law that has none.
@@ -46,7 +43,7 @@ impl FrictionChange {
     pub(crate) fn of(found: &Identification, experiments: &[Experiment]) -> Option<Self> {
         let Asked { value, uncertainty, moved } = asked(found, experiments, Term::Change)?;
         // From a second to a half cycle.
-        let half_cycle = 0.5 / reference(experiments).guess().frequency();
+        let half_cycle = 0.5 / reference(experiments).guess.frequency();
         Some(Self {
             per_half_cycle: value * half_cycle,
             uncertainty: uncertainty * half_cycle,
@@ -102,24 +99,24 @@ struct Asked {
 /// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, for
 /// driven motions, and where the parameters can follow it.
 fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Option<Asked> {
-    let is_next = |extended: &Candidate| extended.terms().has(term) && !found.terms().has(term);
+    let is_next = |extended: &Candidate| extended.terms.has(term) && !found.fitted.model.terms.has(term);
     let extended = with_change(&Candidate::fitted(found)).filter(is_next)?;
-    if experiments.iter().any(|experiment| experiment.drive().is_some()) || !found.residual_structure().is_noisy() {
+    if experiments.iter().any(|experiment| experiment.drive().is_some()) || !found.structure.is_noisy() {
         return None;
     }
-    let (machine, fit) = (*found.machine(), found.fit());
-    let base = Problem::of(found.family(), machine, found.terms().clone(), experiments).ok()?;
-    let problem = Problem::of(*extended.law(), machine, extended.terms().clone(), experiments).ok()?;
-    let index = problem.quantities().shared(Place::Term(term))?;
+    let fit = found.fit();
+    let base = found.problem(experiments).ok()?;
+    let problem = Problem::of(&extended, *found.machine(), experiments).ok()?;
+    let index = problem.table.shared(Place::Term(term))?;
     let mut direction = problem.columns(&problem.extended(fit), &[index]).ok()?.pop()?;
-    let tangent = found.tangent(&base)?;
+    let tangent = Tangent::of(&base, fit)?;
     let before: f64 = direction.iter().map(|d| d * d).sum();
-    let level = found.family().level().map(|level| base.quantities().law + level);
+    let level = found.family().level().map(|level| base.table.law + level);
     let relative = |level: usize| tangent.step(level, &direction) / fit.values()[level];
     let moved = level.filter(|level| fit.values()[*level] > 0.0).map_or(0.0, relative);
-    tangent.take_out(&mut direction);
+    tangent.span.take_out(&mut direction);
     let square: f64 = direction.iter().map(|d| d * d).sum();
-    let noise = found.noise().product(&direction, &direction);
+    let noise = found.covariance.noise.product(&direction, &direction);
     if !(square > LEAST_CHANGE * before && noise > 0.0) {
         return None;
     }
@@ -130,22 +127,22 @@ fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Opti
 /// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself, by more than
 /// `limit` standard uncertainties.
 pub(crate) fn asks_for_change(found: &Identification, experiments: &[Experiment], limit: f64) -> bool {
-    let term = if found.terms().has(Term::Change) { Term::CurvedChange } else { Term::Change };
+    let term = if found.fitted.model.terms.has(Term::Change) { Term::CurvedChange } else { Term::Change };
     asked(found, experiments, term).is_some_and(|asked| asked.value.abs() > limit * asked.uncertainty)
 }
 
 impl Candidate {
     /// The law and the terms of an identification.
     pub(crate) fn fitted(found: &Identification) -> Self {
-        Self::by(found.family().with_held_breakaway(), found.terms().clone())
+        Self { law: found.family().with_held_breakaway(), ..found.fitted.model.clone() }
     }
 }
 
 /// The `candidate` with friction that changes during the record, or whose change is curved if it has one, and its viscous
 /// part as damping of the machine, which stays; `None` for a law with internal state and one without friction.
 pub(crate) fn with_change(candidate: &Candidate) -> Option<Candidate> {
-    let terms = candidate.terms().clone();
-    if !candidate.law().is_of_speed() || candidate.law().level().is_none() || terms.has(Term::CurvedChange) {
+    let terms = candidate.terms.clone();
+    if !candidate.law.is_of_speed() || candidate.law.level().is_none() || terms.has(Term::CurvedChange) {
         return None;
     }
     let terms = if terms.has(Term::Change) { terms.with_curved_change() } else { terms.with_change() };
@@ -153,23 +150,4 @@ pub(crate) fn with_change(candidate: &Candidate) -> Option<Candidate> {
         CoulombViscous::NAME => Candidate::of::<Coulomb>().with(terms.with_linear_damping()),
         _ => candidate.clone().with(terms),
     })
-}
-
-/// The identification of `experiments` by the law of `found` with friction that changes, begun at the end of `found`;
-/// `None` where there is no such law.
-///
-/// # Errors
-/// Those of [`identify`](crate::identify).
-pub(crate) fn identify_with_change(
-    found: &Identification,
-    machine: &Machine,
-    experiments: &[Experiment],
-    options: &Options,
-    observer: &mut Observer<'_>,
-) -> Result<Option<(Candidate, Identification)>, IdentifyError> {
-    let Some(candidate) = with_change(&Candidate::fitted(found)) else { return Ok(None) };
-    let begin = Begin::Extended(found.fitted());
-    let (law, terms) = (*candidate.law(), candidate.terms());
-    let identification = identify_by(law, machine, terms, experiments.into(), begin, options, observer)?;
-    Ok(Some((candidate, identification)))
 }

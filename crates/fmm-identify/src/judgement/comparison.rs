@@ -1,36 +1,17 @@
 //! Comparison of several laws by their fits to the same records.
 
-use std::ops::ControlFlow;
-
-use fmm_fit::{Options, Progress, f_tail};
-
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::{Experiment, Experiments, RecordSummary};
+use crate::experiment::{Experiment, RecordSummary};
 use crate::finding::{Finding, Source};
 use crate::identification::Identification;
 use crate::identification::beside::closest;
-use crate::judgement::change::{FrictionChange, asks_for_change, with_change};
+use crate::judgement::change::{FrictionChange, asks_for_change};
 use crate::judgement::filtering::filtering_sensor;
 use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
-use crate::machine::Machine;
-use crate::machine::terms::Term;
 use crate::warning::Warning;
-
-/// A law and the more general one that it was tested against.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct NestedTest {
-    /// Name of the restricted law.
-    pub restricted: String,
-    /// Name of the law that has it as a special case.
-    pub full: String,
-    /// Probability of so much less misfit by the full law if the restricted one is true, for the noise that the
-    /// residuals show (1).
-    pub p_value: f64,
-}
 
 /// Identifications of the same records by several laws.
 ///
@@ -52,7 +33,6 @@ pub struct Comparison {
     pub(crate) records: Vec<RecordSummary>,
     pub(crate) identifications: Vec<Identification>,
     pub(crate) judgement: Judgement,
-    pub(crate) tests: Vec<NestedTest>,
     pub(crate) score_tests: Vec<ScoreTest>,
     /// Change of the friction during the records that the preferred law leaves out.
     pub(crate) change: Option<FrictionChange>,
@@ -60,86 +40,9 @@ pub struct Comparison {
     pub(crate) warnings: Vec<Warning>,
 }
 
-/// Identifies the `experiments` by each of `candidates` and compares them.
-///
-/// Of forces along motions, two laws are compared at the samples that count for both.
-///
-/// ```
-/// use fmm_identify::{Candidate, ForceRecord, Machine, compare};
-///
-/// // 12 N and 30 N s/m, with 0.2 N of noise.
-/// let times: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
-/// let velocities: Vec<f64> = times.iter().map(|t| 0.06 * (3.0 * t).cos()).collect();
-/// let noise = |i: usize| 0.2 * (1.7 * (i * i) as f64).sin();
-/// let forces: Vec<f64> =
-///     velocities.iter().enumerate().map(|(i, v)| 12.0 * v.signum() + 30.0 * v + noise(i)).collect();
-/// let record = ForceRecord::of_velocities(&times, &velocities, &forces)?;
-/// let candidates = ["coulomb", "coulomb + linear", "coulomb + linear + zero"];
-/// let candidates = candidates.into_iter().map(Candidate::named).collect::<Result<Vec<_>, _>>()?;
-/// let compared = compare(&Machine::per_unit_mass(), &[record], &candidates)?;
-/// assert_eq!(compared.preferred().law(), "coulomb + linear");
-/// println!("{compared}");
-/// # Ok::<(), fmm_identify::IdentifyError>(())
-/// ```
-///
-/// # Errors
-/// [`IdentifyError`] as for [`identify`](crate::identify), [`IdentifyError::Missing`] without a candidate, and
-/// [`IdentifyError::Contradiction`] for a candidate that is given twice.
-pub fn compare<'a>(
-    machine: &Machine,
-    experiments: impl Into<Experiments<'a>>,
-    candidates: &[Candidate],
-) -> Result<Comparison, IdentifyError> {
-    compare_observed(machine, experiments, candidates, &Options::default(), |_, _| ControlFlow::Continue(()))
-}
-
-/// The comparison of [`compare`] with options for the solver and an observer that gets the law's name with every trial
-/// step.
-///
-/// # Errors
-/// Those of [`compare`].
-pub fn compare_observed<'a>(
-    machine: &Machine,
-    experiments: impl Into<Experiments<'a>>,
-    candidates: &[Candidate],
-    options: &Options,
-    mut observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
-) -> Result<Comparison, IdentifyError> {
-    let allowed = |candidate: &Candidate| {
-        let is_open = machine.steadiness().is_some() && !candidate.terms().has(Term::Change);
-        with_change(candidate).filter(|_| is_open).unwrap_or_else(|| candidate.clone())
-    };
-    let candidates: Vec<Candidate> = candidates.iter().map(allowed).collect();
-    let candidates = candidates.as_slice();
-    let names: Vec<String> = candidates.iter().map(Candidate::name).collect();
-    if let Some((_, twice)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
-        return Err(IdentifyError::contradiction(format!("{twice} is given twice; leave one out")));
-    }
-    let mut fit = |experiments: Experiments<'_>| {
-        let fitted = candidates.iter().map(|candidate| {
-            let name = candidate.name();
-            let mut observe = |progress: &Progress<'_>| observer(&name, progress);
-            candidate.identify_observed(machine, experiments, options, &mut observe)
-        });
-        fitted.collect::<Result<Vec<_>, _>>()
-    };
-    let experiments = experiments.into();
-    let identifications = fit(experiments)?;
-    let Experiments::Vibrations(decays) = experiments else {
-        return Comparison::of(&[], candidates, identifications);
-    };
-    if let Some(drifting) = closest(&identifications).and_then(|found| found.with_drift(decays)) {
-        let with_drift = fit((&drifting).into())?;
-        if explains(&with_drift) {
-            return Comparison::of(&drifting, candidates, with_drift);
-        }
-    }
-    Comparison::of(decays, candidates, identifications)
-}
-
 /// The closest of these laws leaves noise of the records. A drift that leaves more may be a law that misses something.
 pub(crate) fn explains(identifications: &[Identification]) -> bool {
-    closest(identifications).is_some_and(|found| !found.residual_structure().is_structured())
+    closest(identifications).is_some_and(|found| !found.structure.is_structured())
 }
 
 impl Comparison {
@@ -165,9 +68,9 @@ impl Comparison {
         judgement.is_decided &= sensor.as_ref().is_none_or(|warning| matches!(warning, Warning::LeftOut { .. }));
         // The law may have taken a part of the drift.
         let drifts = decays.iter().any(Experiment::drifts);
-        judgement.is_decided &= !(drifts && identifications[preferred].residual_structure().is_correlated());
+        judgement.is_decided &= !(drifts && identifications[preferred].structure.is_correlated());
         // Noise that grows with the motion hides further parameters of a law that is left.
-        let grows = identifications[preferred].noise().growth().is_some();
+        let grows = identifications[preferred].covariance.noise.growth().is_some();
         let has_others = (0..candidates.len()).any(|place| place != preferred && judgement.is_left(place));
         judgement.is_decided &= !(grows && has_others);
         let widened = widen_for_other_laws(candidates, &mut identifications, &judgement);
@@ -189,7 +92,6 @@ impl Comparison {
         }
         Ok(Self {
             records: decays.iter().map(|decay| decay.summary().clone()).collect(),
-            tests: tests(candidates, &identifications),
             identifications,
             judgement,
             score_tests: Vec::new(),
@@ -198,23 +100,6 @@ impl Comparison {
             warnings,
         })
     }
-}
-
-fn tests(candidates: &[Candidate], identifications: &[Identification]) -> Vec<NestedTest> {
-    let mut tests = Vec::new();
-    for (restricted, small) in candidates.iter().zip(identifications) {
-        for (full, large) in candidates.iter().zip(identifications) {
-            let further = large.fit().rank().saturating_sub(small.fit().rank());
-            if further == 0 || !restricted.is_nested_in(full) {
-                continue;
-            }
-            let (misfit, freedom) = small.misfit_beside(large);
-            if let Some(p_value) = f_tail(misfit / further as f64, further as f64, freedom) {
-                tests.push(NestedTest { restricted: restricted.name(), full: full.name(), p_value });
-            }
-        }
-    }
-    tests
 }
 
 /// Warning about a level and a straight line that misses the record by far and gives less than half of the friction at
@@ -285,7 +170,7 @@ fn widen_for_other_laws(
             continue;
         }
         let is_general = candidates[preferred].is_nested_in(&candidates[other]);
-        let count = identifications[preferred].effective_count();
+        let count = identifications[preferred].covariance.effective_count;
         let weight =
             judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), count);
         // Where the record does not decide, either law is as good as the other.
@@ -315,7 +200,7 @@ fn widen_for_other_laws(
         if names.contains(&name) {
             continue;
         }
-        if let Some(own) = identifications[preferred].finding_mut(&name) {
+        if let Some(own) = identifications[preferred].findings.iter_mut().find(|own| own.parameter().name() == name) {
             let narrow = own.uncertainty().unwrap_or(widened);
             own.add(Source::OtherLaws, (widened * widened - narrow * narrow).max(0.0).sqrt());
         }
@@ -381,11 +266,6 @@ impl Comparison {
     /// All laws of the search were tried; false if a time limit ended it.
     pub fn is_complete(&self) -> bool {
         self.is_complete
-    }
-
-    /// Tests of every law against the more general ones.
-    pub fn tests(&self) -> &[NestedTest] {
-        &self.tests
     }
 
     /// Each record of a vibration with its preparation and the observations made in it.

@@ -7,8 +7,8 @@ use fmm_fit::Options;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, Sensor};
 use crate::fit::stages::Begin;
+use crate::identification::Identification;
 use crate::identification::beside::closest;
-use crate::identification::{Identification, identify_by};
 use crate::judgement::rules::{
     AS_GOOD, ENOUGH_SAMPLES, EXCESS_OF_FILTER, FILTER_ORDER, MOST_ITERATIONS_OF_FILTER, SHOWN_CORNER,
 };
@@ -37,7 +37,7 @@ pub(crate) fn filtering_sensor(
     if let Some(uncertainty) = corner.uncertainty().filter(|u| corner.value() > SHOWN_CORNER * u) {
         return Ok(Some(Warning::FilteringSensor { law, corner: corner.value(), uncertainty }));
     }
-    let is_explained = preferred.residual_structure().is_structured() && !found.residual_structure().is_correlated();
+    let is_explained = preferred.structure.is_structured() && !found.structure.is_correlated();
     Ok(is_explained.then_some(Warning::Beginning { law, time: settled }))
 }
 
@@ -56,32 +56,24 @@ pub(crate) fn behind_filter(
         return Ok(None);
     }
     let is_simple = |found: &&Identification| {
-        matches!(found.family().dry_name(), None | Some("coulomb")) && !found.terms().has_spring()
+        matches!(found.family().dry_name(), None | Some("coulomb")) && !found.fitted.model.terms.has_spring()
     };
     let Some(simple) = closest(identifications.iter().filter(is_simple)) else { return Ok(None) };
-    let structure = simple.residual_structure();
+    let structure = simple.structure;
     if !structure.is_correlated() && structure.residual < EXCESS_OF_FILTER * structure.noise {
         return Ok(None);
     }
     let sensor = Sensor::default().with_free_low_pass(FILTER_ORDER)?;
     let behind = |decay: &Experiment| {
-        let stride = (decay.record().rate() / (ENOUGH_SAMPLES * decay.guess().frequency())) as usize;
+        let stride = (decay.record().rate() / (ENOUGH_SAMPLES * decay.guess.frequency())) as usize;
         let thinned = (stride > 1).then(|| decay.thinned(stride)).flatten();
         thinned.unwrap_or_else(|| decay.clone()).seen_by(sensor)
     };
     let seen = decays.iter().map(behind).collect::<Result<Vec<_>, _>>()?;
     let options = Options::default().with_max_iterations(MOST_ITERATIONS_OF_FILTER);
-    let (machine, terms) = (simple.machine(), simple.terms());
-    let mut observer = |_: &fmm_fit::Progress<'_>| ControlFlow::Continue(());
-    let found = identify_by(
-        simple.family(),
-        machine,
-        terms,
-        (&seen).into(),
-        Begin::Behind(simple.fitted()),
-        &options,
-        &mut observer,
-    )?;
-    let settled = decays.iter().map(|decay| sensor.settling(decay.guess().frequency())).fold(0.0, f64::max);
+    let found = Identification::of(&simple.problem(&seen)?, Begin::Behind(&simple.fitted), &options, &mut |_| {
+        ControlFlow::Continue(())
+    })?;
+    let settled = decays.iter().map(|decay| sensor.settling(decay.guess.frequency())).fold(0.0, f64::max);
     Ok(Some((found, settled)))
 }

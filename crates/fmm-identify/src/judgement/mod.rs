@@ -4,15 +4,16 @@ pub(crate) mod change;
 pub(crate) mod comparison;
 pub(crate) mod filtering;
 mod friction_over_load;
+mod inquiry;
 pub(crate) mod rules;
 pub(crate) mod score_test;
 mod search;
 
 pub use change::FrictionChange;
-pub use comparison::{Comparison, NestedTest, compare, compare_observed};
-pub use friction_over_load::{FrictionOverLoad, LoadVerdict};
-pub use score_test::{Extension, ScoreTest};
-pub use search::{Search, search, search_observed};
+pub use comparison::Comparison;
+pub use friction_over_load::FrictionOverLoad;
+pub use inquiry::{Inquiry, compare, identify, search};
+pub use score_test::ScoreTest;
 
 use fmm_fit::f_tail;
 

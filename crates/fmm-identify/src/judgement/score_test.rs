@@ -7,16 +7,16 @@ use fmm_fit::{Estimate, EvaluationError, Residuals};
 use fmm_friction::{Berger, Coulomb, CoulombViscous, Dahl, LawFamily};
 use fmm_model::{ModelError, Restoring};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
 use crate::judgement::rules::{FALLS, LEAST_CHANGE, STEP};
-use crate::law::Law;
 use crate::law::naming::LINEAR;
 use crate::machine::Terms;
 use crate::machine::terms::Term;
 use crate::problem::Problem;
-use crate::problem::fitted::Fall;
+use crate::problem::starts::Fall;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Place;
 use crate::residuals::rules::{SIGNIFICANT, SIGNIFICANT_FALL};
@@ -24,8 +24,7 @@ use crate::warning::Warning;
 
 /// An extension of Coulomb and viscous friction on a linear spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Extension {
+pub(crate) enum Extension {
     /// Friction that falls with the speed, by 1/e over this share of the largest speed (1).
     FallsWithSpeed(f64),
     /// Damping that grows with the square of the speed.
@@ -49,17 +48,22 @@ impl fmt::Display for Extension {
     }
 }
 
-/// Score test of one extension: its size by the residuals, with its uncertainty.
+/// Score test of one extension: its size by the residuals, with its uncertainty. `Display` names the extension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ScoreTest {
-    /// The extension.
-    pub extension: Extension,
+    pub(crate) extension: Extension,
     /// Size that the residuals ask for, as a share of the friction, of the amplitude or of the stiffness (1). Negative:
     /// its opposite.
     pub size: f64,
     /// Standard uncertainty of the size (1).
     pub uncertainty: f64,
+}
+
+impl fmt::Display for ScoreTest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "sign of {}: {:.1} standard uncertainties", self.extension, self.significance())
+    }
 }
 
 impl ScoreTest {
@@ -100,19 +104,19 @@ pub(crate) fn score_tests(
     decays: &[Experiment],
 ) -> Result<(Vec<ScoreTest>, Vec<Warning>), IdentifyError> {
     let machine = *base.machine();
-    let problem = Problem::of(base.family(), machine, base.terms().clone(), decays)?;
-    if problem.quantities().oscillator != 1 || !is_simple(base) {
+    let problem = base.problem(decays)?;
+    if problem.table.oscillator != 1 || !is_simple(base) {
         return Ok((Vec::new(), Vec::new()));
     }
     let value = |name: &str| base.fit().estimate(name).map_or(0.0, Estimate::value);
-    let friction = base.fit().values()[problem.quantities().law];
+    let friction = base.fit().values()[problem.table.law];
     let damping = value(LINEAR);
     let (length, speed) = reference(decays).scales();
     // For a machine without friction, the level with the same losses.
     let level = friction.max(0.25 * PI * 0.5 * damping * speed).max(f64::MIN_POSITIVE);
     // The residuals of an extension with these `values` of its law, or a step of quadratic damping.
     let residuals = |problem: &Problem<'_>, of_law: &[f64]| -> Result<Vec<f64>, EvaluationError> {
-        let table = problem.quantities();
+        let table = &problem.table;
         let mut values = problem.extended(base.fit());
         values[table.law..table.law + of_law.len()].copy_from_slice(of_law);
         if let Some(quadratic) = table.shared(Place::Term(Term::QuadraticDamping)) {
@@ -122,20 +126,20 @@ pub(crate) fn score_tests(
         problem.evaluate(&values, &mut residuals, None)?;
         Ok(residuals)
     };
-    let of_base = &base.fit().values()[problem.quantities().of_law()];
+    let of_base = &base.fit().values()[problem.table.of_law()];
     let mut changes: Vec<(Extension, Result<Vec<f64>, EvaluationError>)> = Vec::new();
-    let linear = base.terms().clone().with_linear_damping();
+    let linear = base.fitted.model.terms.clone().with_linear_damping();
     for share in FALLS {
-        let berger = Problem::of(Law::of::<Berger>(), machine, linear.clone(), decays)?;
+        let berger = Problem::of(&Candidate::of::<Berger>().with(linear.clone()), machine, decays)?;
         let of_law = [friction, STEP * level, 1.0 / (share * speed)];
         changes.push((Extension::FallsWithSpeed(share), residuals(&berger, &of_law)));
     }
-    let quadratic = base.terms().clone().with_quadratic_damping();
-    let quadratic = Problem::of(base.family(), machine, quadratic, decays)?;
+    let quadratic = base.fitted.model.terms.clone().with_quadratic_damping();
+    let quadratic = Problem::of(&base.fitted.model.clone().with(quadratic), machine, decays)?;
     changes.push((Extension::QuadraticDamping, residuals(&quadratic, of_base)));
     // A contact with internal state takes no load that changes.
-    if friction > 0.0 && !base.terms().has(Term::Change) {
-        let dahl = Problem::of(Law::of::<Dahl>(), machine, linear, decays)?;
+    if friction > 0.0 && !base.fitted.model.terms.has(Term::Change) {
+        let dahl = Problem::of(&Candidate::of::<Dahl>().with(linear), machine, decays)?;
         let of_law = [friction, friction / (STEP * length), 1.0];
         changes.push((Extension::Presliding, residuals(&dahl, &of_law)));
     }
@@ -143,12 +147,12 @@ pub(crate) fn score_tests(
         let softened = |length: f64| -> Result<_, ModelError> { Ok(machine.with_restoring(Restoring::sine(length)?)) };
         // The sine of x/L loses x²/6L² of the stiffness.
         let softened = softened(length / (6.0 * STEP).sqrt())?;
-        let softened = Problem::of(base.family(), softened, base.terms().clone(), decays)?;
+        let softened = Problem::of(&base.fitted.model, softened, decays)?;
         changes.push((Extension::SofteningSpring, residuals(&softened, of_base)));
     }
     let no_derivatives = || EvaluationError::message("the fit has no derivatives");
-    let tangent =
-        base.tangent(&problem).ok_or_else(|| IdentifyError::simulation(base.family().name, no_derivatives()))?;
+    let tangent = Tangent::of(&problem, base.fit())
+        .ok_or_else(|| IdentifyError::simulation(base.family().name, no_derivatives()))?;
     let (mut tests, mut warnings) = (Vec::new(), Vec::new());
     for (extension, changed) in changes {
         match changed {
@@ -162,10 +166,10 @@ pub(crate) fn score_tests(
 /// True for Coulomb and viscous friction, be it steady or not.
 fn is_simple(base: &Identification) -> bool {
     match base.family().name {
-        CoulombViscous::NAME => base.terms().is_empty(),
+        CoulombViscous::NAME => base.fitted.model.terms.is_empty(),
         Coulomb::NAME => {
             let changing = Terms::NONE.with_linear_damping().with_change();
-            *base.terms() == changing || *base.terms() == changing.with_curved_change()
+            base.fitted.model.terms == changing || base.fitted.model.terms == changing.with_curved_change()
         }
         _ => false,
     }
@@ -178,10 +182,10 @@ fn score_test(base: &Identification, tangent: &Tangent, extension: Extension, ch
     let mut direction: Vec<f64> =
         changed.iter().zip(residuals).map(|(changed, residual)| (changed - residual) / STEP).collect();
     let before: f64 = direction.iter().map(|d| d * d).sum();
-    tangent.take_out(&mut direction);
+    tangent.span.take_out(&mut direction);
     let square: f64 = direction.iter().map(|d| d * d).sum();
-    let noise = base.noise().product(&direction, &direction);
-    if !(square > LEAST_CHANGE * before && noise > 0.0 && base.residual_structure().is_noisy()) {
+    let noise = base.covariance.noise.product(&direction, &direction);
+    if !(square > LEAST_CHANGE * before && noise > 0.0 && base.structure.is_noisy()) {
         return None;
     }
     let product: f64 = direction.iter().zip(residuals).map(|(d, r)| d * r).sum();

@@ -1,83 +1,34 @@
 //! The search for the law that a record asks for: it begins simple and widens as the residuals ask.
 
-use std::ops::ControlFlow;
-use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use fmm_fit::{Options, Progress};
+use fmm_fit::Options;
 use fmm_friction::{
     Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SearchRole, SearchStage, SearchTrial, catalogue,
 };
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::Experiment;
-use crate::fit::stages::Near;
+use crate::experiment::{Experiment, Experiments};
+use crate::fit::stages::{Begin, Near};
 use crate::identification::Identification;
 use crate::identification::beside::closest;
-use crate::judgement::change::{asks_for_change, identify_with_change, with_change};
+use crate::judgement::change::{asks_for_change, with_change};
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
+use crate::judgement::inquiry::{Inquiry, is_past};
 use crate::judgement::rules::{
     ASKED_CHANGE, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
 use crate::judgement::{Judgement, shortcomings};
-use crate::machine::Machine;
 use crate::machine::terms::{Term, Terms};
-use crate::problem::fitted::Fall;
+use crate::problem::starts::Fall;
+use crate::quantities::table::Table;
 use crate::threads::on_all_threads;
 use crate::warning::Warning;
 
-/// Options of a search for the law. The default tries as many laws as the record asks for, on all threads of the
-/// current rayon pool.
-///
-/// ```
-/// use std::time::Duration;
-///
-/// use fmm_identify::Search;
-///
-/// let search = Search::default().within(Duration::from_secs(2));
-/// assert_eq!(search, Search::default().within(Duration::from_millis(2000)));
-/// ```
-#[derive(Debug, Clone, Default, PartialEq)]
-#[non_exhaustive]
-pub struct Search {
-    families: Vec<Family>,
-    held: Vec<(Option<String>, String, f64)>,
-    time_limit: Option<Duration>,
-    threads: Option<usize>,
-}
-
-impl Search {
-    /// The search with family `F`, a user's law, beside the catalogue. Its trials are those of
-    /// [`SEARCH`](LawFamily::SEARCH), each after the laws of the catalogue at that stage.
-    #[must_use]
-    pub fn including<F: LawFamily>(mut self) -> Self {
-        self.families.push(Families.visit::<F>());
-        self
-    }
-
-    /// Fixes the parameter `name` at `value`, in the unit of the fit: of the law `law`, or of every law that has it.
-    #[must_use]
-    pub fn holding(mut self, law: Option<&str>, name: &str, value: f64) -> Self {
-        self.held.push((law.map(str::to_owned), name.to_owned(), value));
-        self
-    }
-
-    /// Ends the search after `limit`: no further law begins, and a law that is being fitted is left out.
-    #[must_use]
-    pub fn within(self, limit: Duration) -> Self {
-        Self { time_limit: Some(limit), ..self }
-    }
-
-    /// Searches on `threads` threads of its own, at least one; without the feature `rayon` there is one. The result
-    /// does not depend on it.
-    #[must_use]
-    pub fn on_threads(self, threads: usize) -> Self {
-        Self { threads: Some(threads.max(1)), ..self }
-    }
-
+impl Inquiry<'_> {
     /// Trials that the families state for a stage.
     fn at(&self, stage: SearchStage) -> Vec<Trial> {
         let families = catalogue(&mut Families).into_iter().chain(self.families.iter().cloned());
@@ -109,7 +60,7 @@ impl Search {
     }
 
     /// The candidate of a trial, with the parameters that are held.
-    fn candidate(&self, trial: &Trial, machine: &Machine, decays: &[Experiment]) -> Result<Candidate, IdentifyError> {
+    fn tried(&self, trial: &Trial, decays: &[Experiment]) -> Result<Candidate, IdentifyError> {
         let mut candidate = trial.candidate.clone();
         for (parameter, value) in trial.fixed {
             let is_given =
@@ -118,7 +69,7 @@ impl Search {
                 candidate = candidate.holding(parameter, *value)?;
             }
         }
-        let known = candidate.parameters(machine, decays)?;
+        let known = self.parameters(&candidate, decays)?;
         for (law, parameter, value) in &self.held {
             if is_meant(law.as_deref(), &candidate) && known.contains(parameter) {
                 candidate = candidate.holding(parameter, *value)?;
@@ -127,12 +78,21 @@ impl Search {
         Ok(candidate)
     }
 
+    /// Names of the parameters of a fit to `decays`: of the oscillator, the damping, the law, and the initial state.
+    fn parameters(&self, candidate: &Candidate, decays: &[Experiment]) -> Result<Vec<String>, IdentifyError> {
+        if decays.is_empty() {
+            return Err(IdentifyError::no_record());
+        }
+        let (_, parameters) = Table::of(candidate, &self.machine, decays)?;
+        Ok(parameters.iter().map(|parameter| parameter.name().to_owned()).collect())
+    }
+
     /// Refuses a parameter that no law of the search has.
-    fn require_known(&self, machine: &Machine, decays: &[Experiment]) -> Result<(), IdentifyError> {
+    fn require_known(&self, decays: &[Experiment]) -> Result<(), IdentifyError> {
         let mut known = Vec::new();
         for trial in self.all() {
-            let candidate = self.candidate(&trial, machine, decays)?;
-            known.extend(candidate.parameters(machine, decays)?.into_iter().map(|name| (candidate.law_name(), name)));
+            let candidate = self.tried(&trial, decays)?;
+            known.extend(self.parameters(&candidate, decays)?.into_iter().map(|name| (candidate.law_name(), name)));
         }
         let is_one = |(law, name): (&Option<String>, &String)| {
             known.iter().any(|(of, known)| known == name && law.as_ref().is_none_or(|law| law == of))
@@ -142,6 +102,124 @@ impl Search {
         names.sort();
         names.dedup();
         Err(IdentifyError::unknown_parameter(name, &names.join(", ")))
+    }
+
+    /// The comparison of as many laws as vibrations ask for.
+    ///
+    /// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals are
+    /// correlated: laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if
+    /// there is a sign of one; then, unless such a spring explains the records, further families, each begun where its
+    /// friction over the speed follows that of the best law so far; and laws with presliding if there is a sign of it. The
+    /// tests are in [`Comparison::score_tests`]. Laws that cannot be fitted to the end, and that are then far from others,
+    /// are left out; a warning names them, and one each law that cannot be fitted at all.
+    ///
+    /// # Errors
+    /// Those of [`identify`](crate::identify), for a parameter that no law has, and for forces along motions.
+    pub fn search(&self) -> Result<Comparison, IdentifyError> {
+        let Experiments::Vibrations(decays) = self.experiments else {
+            return Err(IdentifyError::contradiction(
+                "a search is for vibrations; compare candidates for a force along a motion",
+            ));
+        };
+        self.on_pool(|| self.search_here(decays))
+    }
+
+    fn search_here(&self, decays: &[Experiment]) -> Result<Comparison, IdentifyError> {
+        let run = Run { inquiry: self, decays, options: &self.options, end: self.end() };
+        if !self.held.is_empty() {
+            self.require_known(decays)?;
+        }
+        let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, None)?;
+        let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
+        let mut decays = decays;
+        if let Some(drifting) = &drifting {
+            let with_drift =
+                Run { decays: drifting, ..run }.fit(run.candidates(self.at(SearchStage::Simple))?, None)?;
+            if explains(&with_drift.identifications) {
+                (decays, found) = (drifting, with_drift);
+            }
+        }
+        let run = Run { decays, ..run };
+        run.fit_changes(&mut found, Found::simple)?;
+        let (mut tests, mut left_out) = run.score_tests(&found);
+        let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
+        let changes = found.changes();
+        if changes {
+            // A fit with a change may take what a law that falls with the speed would explain.
+            let unknown =
+                |trial: &Trial| found.candidates.iter().all(|known| known.law_name() != trial.candidate.law_name());
+            let falling = self.at(SearchStage::Stribeck).into_iter().filter(unknown);
+            let falling = run.fit(run.candidates(falling)?, found.near(&falls, &[], 0).as_ref())?;
+            found.add(falling);
+        }
+        if found.asks_for_more(&tests) || changes && !found.changes() {
+            let falling = run.fit(run.candidates(self.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
+            found.add(falling);
+            let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
+            // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
+            // comparison.
+            let is_filtered = || {
+                let behind = behind_filter(decays, &found.identifications).ok().flatten();
+                behind.is_some_and(|(found, _)| !found.structure.is_correlated())
+            };
+            if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
+                let bent = run.fit(run.candidates(beside(&SPRINGS))?, found.near(&falls, &[], 0).as_ref())?;
+                found.add(bent);
+                if found.is_structured() {
+                    let with_corners = run.fit(run.candidates(beside(&CORNERS))?, None)?;
+                    found.add(with_corners);
+                }
+            }
+            let limited =
+                |most: usize| self.options.clone().with_max_iterations(most.min(self.options.max_iterations()));
+            let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
+            let run = Run { options: &of_speed, ..run };
+            // If a spring explains the records, no friction of the speed does.
+            if found.is_structured() || !(found.is_bent() || found.changes()) {
+                let further = found.unfinished().chain(run.candidates(self.at(SearchStage::FurtherOfSpeed))?).collect();
+                let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
+                found.add(further);
+            }
+            // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
+            // moves where the machine turns.
+            let steps = decays.iter().map(|decay| {
+                let summary = decay.summary();
+                summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
+            });
+            let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
+            let is_seen = |test: &ScoreTest| {
+                test.extension == Extension::Presliding && test.significance() > SEEN_PRESLIDING && test.size > least
+            };
+            if tests.iter().any(is_seen) {
+                let run = Run { options: &limited_more, ..run };
+                let with_state =
+                    run.fit(run.candidates(self.at(SearchStage::Presliding))?, found.near(&falls, &[], 0).as_ref())?;
+                found.add(with_state);
+                let with_state = run.fit(
+                    run.candidates(self.at(SearchStage::FurtherPresliding))?,
+                    found.near(&falls, &[preslides], 2).as_ref(),
+                )?;
+                found.add(with_state);
+            }
+        }
+        run.fit_changes(&mut found, Found::preferred)?;
+        if self.machine.steadiness().is_some() {
+            run.allow_changes(&mut found)?;
+        }
+        let dropped = found.drop_unfinished(&self.at(SearchStage::Simple));
+        tests.retain(|test| test.uncertainty.is_finite());
+        left_out.extend(found.failures());
+        let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
+        comparison.score_tests = tests;
+        comparison.warnings.extend(left_out);
+        comparison.is_complete = !found.is_cut_short;
+        if found.is_cut_short {
+            comparison.warnings.push(Warning::TimeLimit);
+        }
+        if !dropped.is_empty() {
+            comparison.warnings.push(Warning::NotFitted { laws: dropped.join(", ") });
+        }
+        Ok(comparison)
     }
 }
 
@@ -167,20 +245,13 @@ const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
 
 /// A law family and the trials that it states.
 #[derive(Debug, Clone)]
-struct Family {
+pub(super) struct Family {
     candidate: Candidate,
     trials: &'static [SearchTrial],
 }
 
-/// Families are equal if their names are.
-impl PartialEq for Family {
-    fn eq(&self, other: &Self) -> bool {
-        self.candidate.law_name() == other.candidate.law_name()
-    }
-}
-
 /// Makes families of the catalogue values.
-struct Families;
+pub(super) struct Families;
 
 impl FamilyVisitor for Families {
     type Output = Family;
@@ -199,150 +270,6 @@ impl FamilyVisitor for Families {
 struct Trial {
     candidate: Candidate,
     fixed: &'static [(&'static str, f64)],
-}
-
-/// Identifies `decays` by as many laws as they ask for.
-///
-/// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals are
-/// correlated: laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if
-/// there is a sign of one; then, unless such a spring explains the records, further families, each begun where its
-/// friction over the speed follows that of the best law so far; and laws with presliding if there is a sign of it. The
-/// tests are in [`Comparison::score_tests`]. Laws that cannot be fitted to the end, and that are then far from others,
-/// are left out; a warning names them, and one each law that cannot be fitted at all.
-///
-/// # Errors
-/// [`IdentifyError`] as for [`identify`](crate::identify), and for a parameter that no law has.
-pub fn search(machine: &Machine, decays: &[Experiment], search: &Search) -> Result<Comparison, IdentifyError> {
-    search_observed(machine, decays, search, &Options::default(), |_, _| ControlFlow::Continue(()))
-}
-
-/// The search of [`search`] with options for the solver and an observer that gets the law's name with every trial step.
-///
-/// # Errors
-/// Those of [`search`].
-pub fn search_observed(
-    machine: &Machine,
-    decays: &[Experiment],
-    search: &Search,
-    options: &Options,
-    observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
-) -> Result<Comparison, IdentifyError> {
-    let observer = Mutex::new(observer);
-    let go = || search_here(machine, decays, search, options, &observer);
-    #[cfg(feature = "rayon")]
-    if let Some(threads) = search.threads {
-        // A system that grants no threads leaves those that there are.
-        if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            return pool.install(go);
-        }
-    }
-    go()
-}
-
-/// The search of [`search_observed`] in the current pool.
-fn search_here<F>(
-    machine: &Machine,
-    decays: &[Experiment],
-    search: &Search,
-    options: &Options,
-    observer: &Mutex<F>,
-) -> Result<Comparison, IdentifyError>
-where
-    F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
-{
-    let run = Run { machine, decays, search, options, observer, begun: Instant::now() };
-    if !search.held.is_empty() {
-        search.require_known(machine, decays)?;
-    }
-    let mut found = run.fit(run.candidates(search.at(SearchStage::Simple))?, None)?;
-    let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
-    let mut decays = decays;
-    if let Some(drifting) = &drifting {
-        let with_drift = Run { decays: drifting, ..run }.fit(run.candidates(search.at(SearchStage::Simple))?, None)?;
-        if explains(&with_drift.identifications) {
-            (decays, found) = (drifting, with_drift);
-        }
-    }
-    let run = Run { decays, ..run };
-    run.fit_changes(&mut found, decays, Found::simple)?;
-    let (mut tests, mut left_out) = run.score_tests(&found);
-    let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
-    let changes = found.changes();
-    if changes {
-        // A fit with a change may take what a law that falls with the speed would explain.
-        let unknown =
-            |trial: &Trial| found.candidates.iter().all(|known| known.law_name() != trial.candidate.law_name());
-        let falling = search.at(SearchStage::Stribeck).into_iter().filter(unknown);
-        let falling = run.fit(run.candidates(falling)?, found.near(&falls, &[], 0).as_ref())?;
-        found.add(falling);
-    }
-    if found.asks_for_more(&tests) || changes && !found.changes() {
-        let falling = run.fit(run.candidates(search.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
-        found.add(falling);
-        let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
-        // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
-        // comparison.
-        let is_filtered = || {
-            let behind = behind_filter(decays, &found.identifications).ok().flatten();
-            behind.is_some_and(|(found, _)| !found.residual_structure().is_correlated())
-        };
-        if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
-            let bent = run.fit(run.candidates(beside(&SPRINGS))?, found.near(&falls, &[], 0).as_ref())?;
-            found.add(bent);
-            if found.is_structured() {
-                let with_corners = run.fit(run.candidates(beside(&CORNERS))?, None)?;
-                found.add(with_corners);
-            }
-        }
-        let limited = |most: usize| options.clone().with_max_iterations(most.min(options.max_iterations()));
-        let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
-        let run = Run { options: &of_speed, ..run };
-        // If a spring explains the records, no friction of the speed does.
-        if found.is_structured() || !(found.is_bent() || found.changes()) {
-            let further = found.unfinished().chain(run.candidates(search.at(SearchStage::FurtherOfSpeed))?).collect();
-            let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
-            found.add(further);
-        }
-        // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
-        // moves where the machine turns.
-        let steps = decays.iter().map(|decay| {
-            let summary = decay.summary();
-            summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
-        });
-        let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
-        let is_seen = |test: &ScoreTest| {
-            test.extension == Extension::Presliding && test.significance() > SEEN_PRESLIDING && test.size > least
-        };
-        if tests.iter().any(is_seen) {
-            let run = Run { options: &limited_more, ..run };
-            let with_state =
-                run.fit(run.candidates(search.at(SearchStage::Presliding))?, found.near(&falls, &[], 0).as_ref())?;
-            found.add(with_state);
-            let with_state = run.fit(
-                run.candidates(search.at(SearchStage::FurtherPresliding))?,
-                found.near(&falls, &[preslides], 2).as_ref(),
-            )?;
-            found.add(with_state);
-        }
-    }
-    run.fit_changes(&mut found, decays, Found::preferred)?;
-    if machine.steadiness().is_some() {
-        run.allow_changes(&mut found, decays)?;
-    }
-    let dropped = found.drop_unfinished(&search.at(SearchStage::Simple));
-    tests.retain(|test| test.uncertainty.is_finite());
-    left_out.extend(found.failures());
-    let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
-    comparison.score_tests = tests;
-    comparison.warnings.extend(left_out);
-    comparison.is_complete = !found.is_cut_short;
-    if found.is_cut_short {
-        comparison.warnings.push(Warning::TimeLimit);
-    }
-    if !dropped.is_empty() {
-        comparison.warnings.push(Warning::NotFitted { laws: dropped.join(", ") });
-    }
-    Ok(comparison)
 }
 
 /// Laws that a search has fitted so far.
@@ -378,7 +305,7 @@ impl Found {
         let simple = self.simple()?;
         let others =
             kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
-        Some(Near { simple: simple.fitted(), falls, others: others.map(Identification::fitted).collect(), tries })
+        Some(Near { simple: &simple.fitted, falls, others: others.map(|other| &other.fitted).collect(), tries })
     }
 
     /// Warnings about the laws that could not be fitted in any try.
@@ -421,17 +348,17 @@ impl Found {
 
     /// The residuals of the best law are correlated.
     fn is_structured(&self) -> bool {
-        self.preferred().is_some_and(|preferred| preferred.residual_structure().is_correlated())
+        self.preferred().is_some_and(|preferred| preferred.structure.is_correlated())
     }
 
     /// The best law is one of friction that changes during the record.
     fn changes(&self) -> bool {
-        self.preferred().is_some_and(|preferred| preferred.terms().has(Term::Change))
+        self.preferred().is_some_and(|preferred| preferred.fitted.model.terms.has(Term::Change))
     }
 
     /// The best law is one on a spring that is not linear.
     fn is_bent(&self) -> bool {
-        self.preferred().is_some_and(|preferred| preferred.terms().has_spring())
+        self.preferred().is_some_and(|preferred| preferred.fitted.model.terms.has_spring())
     }
 
     fn preferred(&self) -> Option<&Identification> {
@@ -441,7 +368,7 @@ impl Found {
 
     /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it if that is best.
     fn base(&self) -> Option<&Identification> {
-        self.preferred().filter(|preferred| preferred.terms().has(Term::Change)).or_else(|| self.simple())
+        self.preferred().filter(|preferred| preferred.fitted.model.terms.has(Term::Change)).or_else(|| self.simple())
     }
 
     /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.
@@ -455,49 +382,37 @@ fn preslides(found: &Identification) -> bool {
     found.finding("contact_stiffness_per_mass").is_some()
 }
 
-struct Run<'a, F> {
-    machine: &'a Machine,
+/// A part of a search: with drift or without, by some options.
+#[derive(Clone, Copy)]
+struct Run<'a, 'i> {
+    inquiry: &'a Inquiry<'i>,
     decays: &'a [Experiment],
-    search: &'a Search,
     options: &'a Options,
-    observer: &'a Mutex<F>,
-    begun: Instant,
+    end: Option<Instant>,
 }
 
-impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
+impl Run<'_, '_> {
     /// The candidates of these trials, with the parameters that are held.
     fn candidates(&self, trials: impl IntoIterator<Item = Trial>) -> Result<Vec<Candidate>, IdentifyError> {
-        trials.into_iter().map(|trial| self.search.candidate(&trial, self.machine, self.decays)).collect()
-    }
-
-    fn is_late(&self) -> bool {
-        self.search.time_limit.is_some_and(|limit| self.begun.elapsed() >= limit)
+        trials.into_iter().map(|trial| self.inquiry.tried(&trial, self.decays)).collect()
     }
 
     /// Fits the `candidates`. Those that do not begin near others are fitted after the time limit too.
     fn fit(&self, candidates: Vec<Candidate>, near: Option<&Near<'_>>) -> Result<Found, IdentifyError> {
         let must = near.is_none();
+        let end = self.end.filter(|_| !must);
         let mut found = Found::default();
         let fit = |candidate: &Candidate| {
-            if !must && self.is_late() {
+            if is_past(end) {
                 return None;
             }
-            let name = candidate.name();
-            let mut observe = |progress: &Progress<'_>| {
-                if !must && self.is_late() {
-                    return ControlFlow::Break(());
-                }
-                match self.observer.lock() {
-                    Ok(mut observer) => observer(&name, progress),
-                    Err(_) => ControlFlow::Break(()),
-                }
-            };
-            Some(candidate.identify_near(self.machine, self.decays, near, self.options, &mut observe))
+            let begin = near.map_or(Begin::Anywhere, Begin::Near);
+            Some(self.inquiry.fit(candidate, self.decays.into(), begin, self.options, end))
         };
         let results = on_all_threads(candidates.iter().collect(), fit);
         for (candidate, result) in candidates.into_iter().zip(results) {
             match result {
-                Some(Ok(identification)) if must || !self.is_late() || identification.fit().outcome().is_success() => {
+                Some(Ok(identification)) if !is_past(end) || identification.fit().outcome().is_success() => {
                     found.candidates.push(candidate);
                     found.identifications.push(identification);
                 }
@@ -514,67 +429,52 @@ impl<F: FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send> Run<'_, F> {
     }
 
     /// Adds a fit with friction that changes during the records, if the residuals of one of `found` show a change.
-    fn fit_changes(
-        &self,
-        found: &mut Found,
-        decays: &[Experiment],
-        base: fn(&Found) -> Option<&Identification>,
-    ) -> Result<(), IdentifyError> {
-        if self.is_late() {
+    fn fit_changes(&self, found: &mut Found, base: fn(&Found) -> Option<&Identification>) -> Result<(), IdentifyError> {
+        if is_past(self.end) {
             return Ok(());
         }
-        let is_shown = |base: &&Identification| asks_for_change(base, decays, ASKED_CHANGE);
+        let is_shown = |base: &&Identification| asks_for_change(base, self.decays, ASKED_CHANGE);
         // Where the damping of the machine is known, a change of the friction may be all that is left of it.
-        let is_dry = |known: &&Identification| self.machine.damping().is_some() && known.family().name == Coulomb::NAME;
+        let has_damping = self.inquiry.machine.damping().is_some();
+        let is_dry = |known: &&Identification| has_damping && known.family().name == Coulomb::NAME;
         let dry = found.identifications.iter().find(is_dry);
         let Some(base) = base(found).filter(is_shown).or(dry.filter(is_shown)) else { return Ok(()) };
         // A law that falls with the speed may have taken a part of the change: the simple law is asked as well.
         let bases: Vec<Identification> = std::iter::once(base).chain(found.simple()).cloned().collect();
         for base in &bases {
-            if let Some(changed) =
-                self.fit_change(found, decays, base)?.filter(|changed| asks_for_change(changed, decays, ASKED_CHANGE))
-            {
-                self.fit_change(found, decays, &changed)?;
+            let changed =
+                self.fit_change(found, base)?.filter(|changed| asks_for_change(changed, self.decays, ASKED_CHANGE));
+            if let Some(changed) = changed {
+                self.fit_change(found, &changed)?;
             }
         }
         Ok(())
     }
 
     /// Replaces the laws that are left by the same with friction that changes, where it is known how little it does.
-    fn allow_changes(&self, found: &mut Found, decays: &[Experiment]) -> Result<(), IdentifyError> {
+    fn allow_changes(&self, found: &mut Found) -> Result<(), IdentifyError> {
         let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return Ok(()) };
         let left = (0..found.candidates.len()).filter(|place| judgement.is_left(*place));
         let bases: Vec<Identification> = left.map(|place| found.identifications[place].clone()).collect();
         let can_change = |base: &&Identification| with_change(&Candidate::fitted(base)).is_some();
-        for base in bases.iter().filter(|base| !base.terms().has(Term::Change)).filter(can_change) {
+        for base in bases.iter().filter(|base| !base.fitted.model.terms.has(Term::Change)).filter(can_change) {
             let place = found.identifications.iter().position(|known| known.law() == base.law());
             if let Some(place) = place {
                 found.candidates.remove(place);
                 found.identifications.remove(place);
             }
-            self.fit_change(found, decays, base)?;
+            self.fit_change(found, base)?;
         }
         Ok(())
     }
 
-    /// Adds the fit by the law of `base` with the next term of a change, and gives it.
-    fn fit_change(
-        &self,
-        found: &mut Found,
-        decays: &[Experiment],
-        base: &Identification,
-    ) -> Result<Option<Identification>, IdentifyError> {
-        let name = base.law().to_owned();
-        let mut observe = |progress: &Progress<'_>| match self.observer.lock() {
-            Ok(mut observer) => observer(&name, progress),
-            Err(_) => ControlFlow::Break(()),
-        };
-        let changed = identify_with_change(base, self.machine, decays, self.options, &mut observe)?;
-        let Some((candidate, identification)) = changed else { return Ok(None) };
-        let further =
-            Found { candidates: vec![candidate], identifications: vec![identification.clone()], ..Found::default() };
-        found.add(further);
-        Ok(Some(identification))
+    /// Adds the fit by the law of `base` with the next term of a change, begun at the end of `base`, and gives it.
+    fn fit_change(&self, found: &mut Found, base: &Identification) -> Result<Option<Identification>, IdentifyError> {
+        let Some(candidate) = with_change(&Candidate::fitted(base)) else { return Ok(None) };
+        let begin = Begin::Extended(&base.fitted);
+        let changed = self.inquiry.fit(&candidate, self.decays.into(), begin, self.options, None)?;
+        found.add(Found { candidates: vec![candidate], identifications: vec![changed.clone()], ..Found::default() });
+        Ok(Some(changed))
     }
 
     fn score_tests(&self, found: &Found) -> (Vec<ScoreTest>, Vec<Warning>) {
@@ -598,6 +498,11 @@ mod tests {
     use fmm_model::Scalar;
 
     use super::*;
+    use crate::machine::Machine;
+
+    fn inquiry() -> Inquiry<'static> {
+        Inquiry::of(&Machine::per_unit_mass(), &[] as &[Experiment])
+    }
 
     fn names(trials: impl IntoIterator<Item = Trial>) -> Vec<String> {
         let name = |trial: Trial| {
@@ -618,7 +523,7 @@ mod tests {
                 (F::NAME, F::SEARCH)
             }
         }
-        let tried = names(Search::default().all());
+        let tried = names(inquiry().all());
         for (law, role) in catalogue(&mut Roles) {
             let found = tried.iter().filter(|name| name.split([' ', ',']).next() == Some(law)).count();
             match role {
@@ -634,7 +539,7 @@ mod tests {
     #[test]
     fn laws_are_tried_from_simple_to_general() {
         assert_eq!(
-            names(Search::default().all()),
+            names(inquiry().all()),
             [
                 "viscous",
                 "coulomb",
@@ -682,8 +587,7 @@ mod tests {
                 visitor.sliding()
             }
         }
-        let search = Search::default().including::<Own>();
+        let search = inquiry().including::<Own>();
         assert_eq!(names(search.of_speed()).last().map(String::as_str), Some("own + linear"));
-        assert_ne!(search, Search::default());
     }
 }

@@ -9,9 +9,9 @@ use crate::law::dimension::{is_coefficient, is_force};
 /// Name of the linear damping per mass, of the machine or of a law.
 pub(crate) const LINEAR: &str = "damping_per_mass";
 
-/// Kind of quantity in which the level of a law is stated.
+/// Form in which a level of a law is stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Level {
+pub(crate) enum Form {
     /// A coefficient, where the load is part of the fit.
     Coefficient,
     /// A coefficient, from a force and a load.
@@ -22,22 +22,24 @@ pub(crate) enum Level {
     PerMass,
 }
 
-impl Level {
-    /// Word in place of `coefficient` in the name of a level.
-    const fn word(self) -> &'static str {
-        match self {
-            Self::Coefficient => "coefficient",
-            Self::Mu => "mu",
-            Self::Force => "friction_force",
-            Self::PerMass => "friction_per_mass",
-        }
-    }
-}
-
-/// Name of a level of a law as `level`: `static_coefficient` is `static_friction_force` as a force.
-pub(crate) fn level_name(name: &str, level: Level) -> String {
+/// Name in this `form` of a level that its law calls `name`, or of the `excess` by which it lies above the sliding one.
+///
+/// | law | from force and load | force | per mass |
+/// |---|---|---|---|
+/// | `coefficient` | `mu` | `friction_force` | `friction_per_mass` |
+/// | `excess_coefficient` | `excess_mu` | `excess_friction_force` | `excess_friction_per_mass` |
+/// | `static_coefficient` | `static_mu` | `static_friction_force` | `static_friction_per_mass` |
+/// | its excess | | `static_excess_friction_force` | `static_excess_friction_per_mass` |
+pub(crate) fn level_name(name: &str, excess: bool, form: Form) -> String {
     let before = name.strip_suffix("coefficient").map_or_else(|| format!("{name}_"), str::to_owned);
-    before + level.word()
+    let excess = if excess { "excess_" } else { "" };
+    let word = match form {
+        Form::Coefficient => "coefficient",
+        Form::Mu => "mu",
+        Form::Force => "friction_force",
+        Form::PerMass => "friction_per_mass",
+    };
+    format!("{before}{excess}{word}")
 }
 
 /// Units of the motion in a record, and of forces.
@@ -79,58 +81,49 @@ impl Units {
         self.position == Unit::of("m")
     }
 
-    /// Unit of a level as `level`.
-    fn of_level(&self, level: Level) -> Unit {
-        match level {
-            Level::Coefficient | Level::Mu => Unit::default(),
-            Level::Force => self.force.clone(),
-            Level::PerMass => self.acceleration(),
-        }
+    /// A parameter of a law with its levels in this `form`, and the lengths of the record in place of m.
+    pub(crate) fn stated(&self, law_parameter: &LawParameter, form: Form) -> Parameter {
+        self.named(law_parameter, false, form)
     }
 
-    /// A parameter of a law with its levels as `level`, and the lengths of the record in place of m.
-    pub(crate) fn stated(&self, law_parameter: &LawParameter, level: Level) -> Parameter {
+    /// A parameter as a fit has it: of a level that may not lie below the sliding one the excess.
+    pub(crate) fn fitted(&self, law_parameter: &LawParameter, form: Form) -> Parameter {
+        self.named(law_parameter, matches!(law_parameter.role(), Role::LevelAbove | Role::Breakaway), form)
+    }
+
+    fn named(&self, law_parameter: &LawParameter, excess: bool, form: Form) -> Parameter {
         let (parameter, role) = (law_parameter.parameter(), law_parameter.role());
         let own = Unit::of(parameter.unit()).with("m", &self.position);
-        let as_force = || self.of_level(level).times(&own);
+        let as_force = || match form {
+            Form::Coefficient | Form::Mu => own.clone(),
+            Form::Force => self.force.times(&own),
+            Form::PerMass => self.acceleration().times(&own),
+        };
         let (plain, symbol) = (parameter.name(), parameter.symbol());
-        let (name, symbol, unit) = match (role, level) {
-            (Role::Slope, Level::Force) => ("damping".to_owned(), "c", as_force()),
-            (Role::Slope, Level::PerMass) => (LINEAR.to_owned(), "c/m", as_force()),
+        let (name, symbol, unit) = match (role, form) {
+            (Role::Slope, Form::Force) => ("damping".to_owned(), "c", as_force()),
+            (Role::Slope, Form::PerMass) => (LINEAR.to_owned(), "c/m", as_force()),
             _ if is_coefficient(law_parameter) => {
-                let symbol = match level {
-                    Level::Force if plain == "coefficient" => "F",
-                    Level::PerMass if plain == "coefficient" => "F/m",
+                let symbol = match form {
+                    Form::Force if plain == "coefficient" => "F",
+                    Form::PerMass if plain == "coefficient" => "F/m",
                     _ => symbol,
                 };
-                (level_name(plain, level), symbol, as_force())
+                (level_name(plain, excess, form), symbol, as_force())
             }
             _ if is_force(role) => {
-                let per_mass = if level == Level::PerMass { "_per_mass" } else { "" };
+                let per_mass = if form == Form::PerMass { "_per_mass" } else { "" };
                 (format!("contact_{plain}{per_mass}"), symbol, as_force())
             }
             _ => (plain.to_owned(), symbol, own),
         };
         Parameter::named(name, symbol.to_owned(), unit.to_string()).bounded(parameter.bounds())
     }
-
-    /// The same as a fit has it: a level that may not lie below the sliding one as what it lies above it by.
-    pub(crate) fn fitted(&self, law_parameter: &LawParameter, level: Level) -> Parameter {
-        let stated = self.stated(law_parameter, level);
-        match law_parameter.role() {
-            Role::LevelAbove | Role::Breakaway => {
-                let excess = law_parameter.parameter().name().replace("coefficient", "excess_coefficient");
-                let (name, symbol) = (level_name(&excess, level), stated.symbol().to_owned());
-                Parameter::named(name, symbol, stated.unit().to_owned()).bounded(stated.bounds())
-            }
-            _ => stated,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use fmm_friction::{Berger, LawFamily, LuGre};
+    use fmm_friction::{Berger, FamilyVisitor, LawFamily, LuGre, catalogue};
 
     use super::*;
 
@@ -142,12 +135,12 @@ mod tests {
     fn names_and_units_follow_from_role_and_record() {
         let metric = Units::new("m", "N");
         assert_eq!(
-            texts(Berger::PARAMETERS, |parameter| metric.fitted(parameter, Level::PerMass)),
+            texts(Berger::PARAMETERS, |parameter| metric.fitted(parameter, Form::PerMass)),
             ["friction_per_mass F/m (m/s²)", "excess_friction_per_mass μ₁ (m/s²)", "decay α (s/m)"]
         );
         let joint = Units::new("rad", "N m");
         assert_eq!(
-            texts(LuGre::PARAMETERS, |parameter| joint.fitted(parameter, Level::Force))[..7],
+            texts(LuGre::PARAMETERS, |parameter| joint.fitted(parameter, Form::Force))[..7],
             [
                 "sliding_friction_force μ_c (N m)",
                 "static_excess_friction_force μ_s (N m)",
@@ -160,6 +153,36 @@ mod tests {
         );
         let volts = Units::of(&Record::new(0.0, 1.0, vec![0.0; 3], Quantity::Velocity, "V").unwrap());
         assert_eq!((volts.position.to_string(), volts.acceleration().to_string()), ("V s".into(), "V/s".into()));
-        assert_eq!(texts(Berger::PARAMETERS, |parameter| volts.stated(parameter, Level::PerMass))[2], "decay α (1/V)");
+        assert_eq!(texts(Berger::PARAMETERS, |parameter| volts.stated(parameter, Form::PerMass))[2], "decay α (1/V)");
+    }
+
+    /// Every level of the catalogue, by the name in its law, and its names as a force and per mass.
+    #[test]
+    fn each_level_of_the_catalogue_has_its_names() {
+        struct Levels;
+        impl FamilyVisitor for Levels {
+            type Output = &'static [LawParameter];
+
+            fn visit<F: LawFamily>(&mut self) -> Self::Output {
+                F::PARAMETERS
+            }
+        }
+        let listed = [
+            ("coefficient", "friction_force", "friction_per_mass"),
+            ("excess_coefficient", "excess_friction_force", "excess_friction_per_mass"),
+            ("sliding_coefficient", "sliding_friction_force", "sliding_friction_per_mass"),
+            ("static_coefficient", "static_friction_force", "static_friction_per_mass"),
+            ("peak_coefficient", "peak_friction_force", "peak_friction_per_mass"),
+            ("gaining_coefficient", "gaining_friction_force", "gaining_friction_per_mass"),
+            ("losing_coefficient", "losing_friction_force", "losing_friction_per_mass"),
+            ("difference_coefficient", "difference_friction_force", "difference_friction_per_mass"),
+        ];
+        let units = Units::new("m", "N");
+        for parameter in catalogue(&mut Levels).into_iter().flatten().filter(|parameter| is_coefficient(parameter)) {
+            let name = parameter.parameter().name();
+            let [force, per_mass] = [Form::Force, Form::PerMass].map(|form| units.stated(parameter, form));
+            let found = (name, force.name(), per_mass.name());
+            assert!(listed.contains(&found) || name.contains("level_"), "{found:?}");
+        }
     }
 }

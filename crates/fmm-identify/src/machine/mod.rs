@@ -40,8 +40,7 @@ pub struct Machine {
 
 /// Scale of the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Scale {
+pub(crate) enum Scale {
     /// No scale: everything per unit mass.
     PerUnitMass,
     /// The mass is known (kg).
@@ -52,6 +51,18 @@ pub enum Scale {
     MassAndStiffness(Known, Known),
     /// Mass and stiffness are both to be found, which no free vibration can do; a fit says so.
     Unknown,
+}
+
+impl Scale {
+    /// The same with its known values changed.
+    fn map(self, change: impl Fn(Known) -> Known) -> Self {
+        match self {
+            Self::Mass(mass) => Self::Mass(change(mass)),
+            Self::Stiffness(stiffness) => Self::Stiffness(change(stiffness)),
+            Self::MassAndStiffness(mass, stiffness) => Self::MassAndStiffness(change(mass), change(stiffness)),
+            other => other,
+        }
+    }
 }
 
 impl Machine {
@@ -151,7 +162,7 @@ impl Machine {
     }
 
     /// Knowledge of mass and stiffness.
-    pub const fn scale(&self) -> Scale {
+    pub(crate) const fn scale(&self) -> Scale {
         self.scale
     }
 
@@ -175,29 +186,20 @@ impl Machine {
         Self { scale, ..*self }
     }
 
-    /// The same machine with its scale and its normal load so many standard uncertainties away, which stay positive.
+    /// The same machine with its scale and its normal load these standard uncertainties away, which stay positive.
     #[cfg(feature = "sampler")]
     pub(crate) fn with_scale_and_load_moved(&self, [scale, load]: [f64; 2]) -> Self {
         let moved = |known: Known, by: f64| {
             let value = known.value() + by * known.uncertainty();
             known.moved_to(if value > 0.0 { value } else { known.value() })
         };
-        let scale = match self.scale {
-            Scale::Mass(mass) => Scale::Mass(moved(mass, scale)),
-            Scale::Stiffness(stiffness) => Scale::Stiffness(moved(stiffness, scale)),
-            other => other,
-        };
+        let scale = self.scale.map(|known| moved(known, scale));
         Self { scale, normal_load: self.normal_load.map(|known| moved(known, load)), ..*self }
     }
 
     /// The same machine with everything that is known of it taken as exact.
     pub(crate) fn exactly(&self) -> Self {
-        let scale = match self.scale {
-            Scale::Mass(mass) => Scale::Mass(mass.exactly()),
-            Scale::Stiffness(stiffness) => Scale::Stiffness(stiffness.exactly()),
-            Scale::MassAndStiffness(mass, stiffness) => Scale::MassAndStiffness(mass.exactly(), stiffness.exactly()),
-            other => other,
-        };
+        let scale = self.scale.map(Known::exactly);
         let (damping, normal_load) = (self.damping.map(Known::exactly), self.normal_load.map(Known::exactly));
         Self { scale, damping, normal_load, ..*self }
     }

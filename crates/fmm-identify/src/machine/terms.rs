@@ -35,7 +35,7 @@ pub struct Terms {
     has: [bool; Term::ALL.len()],
     any_sign: bool,
     /// The longest delay of a force behind its motion (s); `None` for twenty samples.
-    longest_delay: Option<f64>,
+    pub(crate) longest_delay: Option<f64>,
     held: Vec<(String, f64)>,
 }
 
@@ -351,11 +351,6 @@ impl Terms {
     /// The same with a delay of a force behind its motion of at most `longest` (s), positive or negative.
     pub(crate) fn with_delay_up_to(self, longest: f64) -> Self {
         Self { longest_delay: Some(longest), ..self.with(Term::Delay) }
-    }
-
-    /// The longest delay of a force (s) that is looked for, if it was given.
-    pub(crate) const fn longest_delay(&self) -> Option<f64> {
-        self.longest_delay
     }
 
     /// Refuses a term that a vibration does not have.

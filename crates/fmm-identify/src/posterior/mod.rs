@@ -1,7 +1,6 @@
 //! Posterior of an identification: probable values of all its findings.
 
 mod intervals;
-mod known_inputs;
 mod predictive;
 mod report;
 #[cfg(feature = "serde")]
@@ -13,15 +12,15 @@ pub use predictive::PredictiveCheck;
 use fmm_fit::{FitError, Marginal, Posterior, Sampler};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::finding::Origin;
 use crate::identification::Identification;
 use crate::posterior::intervals::{LEVEL, compared};
-use crate::posterior::known_inputs::KnownInputs;
 use crate::posterior::predictive::predicted;
-use crate::problem::Problem;
+use crate::quantities::derived::values_of_findings;
 
 /// The posterior of all findings of an identification beside the intervals of other kinds, with predictive checks.
 ///
@@ -83,7 +82,7 @@ impl Identification {
     /// alike.
     pub fn sampler(&self) -> Sampler {
         let sampler = Sampler::default();
-        if self.residual_structure().is_correlated() { sampler.with_correlated_residuals() } else { sampler }
+        if self.structure.is_correlated() { sampler.with_correlated_residuals() } else { sampler }
     }
 
     /// The posterior of everything found, for the `experiments` of the identification; see [`sampler`](Self::sampler).
@@ -119,14 +118,22 @@ impl Identification {
     ) -> Result<IdentificationPosterior, IdentifyError> {
         let profiles = self.profiles(experiments, LEVEL)?;
         let experiments = self.experiments(experiments)?;
-        let problem = Problem::of(self.family(), *self.machine(), self.terms().clone(), &experiments)?;
+        let problem = self.problem(&experiments)?;
         let failed = |source: FitError| IdentifyError::Posterior { law: self.law().to_owned(), source };
         let posterior = sampler.sample(&problem, self.fit()).map_err(failed)?;
-        let known = KnownInputs::of(self, &problem, &experiments);
+        let gain = experiments.iter().map(|experiment| experiment.summary().gain_uncertainty).fold(0.0, f64::max);
         let mut random = ChaCha8Rng::seed_from_u64(sampler.seed());
         // Behind the streams of the chains.
         random.set_stream(u64::MAX);
-        let draws: Vec<Vec<f64>> = posterior.draws().map(|draw| known.findings(draw, &mut random)).collect();
+        // Scale, load and gain multiply the fitted values; inputs of the motion itself are among the draws.
+        let with_known = |draw: &[f64]| {
+            let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+            // A gain that is wrong by more than its own size is no gain.
+            let gain = (1.0 + gain * normal()).max(f64::EPSILON);
+            let machine = self.machine().with_scale_and_load_moved([normal(), normal()]);
+            values_of_findings(&machine, &problem.table, draw, gain)
+        };
+        let draws: Vec<Vec<f64>> = posterior.draws().map(with_known).collect();
         let is_fixed = |origin: Origin| origin == Origin::Fitted(fmm_fit::EstimateStatus::Fixed);
         let mut findings = Vec::new();
         for (index, finding) in self.findings().iter().enumerate().filter(|(_, finding)| !is_fixed(finding.origin())) {

@@ -31,6 +31,7 @@ pub struct PredictiveCheck {
     unit: String,
     record: usize,
     measured: f64,
+    /// The feature of each replicated record; infinite for a record that does not stop, or that has fewer half cycles.
     replicated: Vec<f64>,
 }
 
@@ -55,11 +56,6 @@ impl PredictiveCheck {
         self.measured
     }
 
-    /// The feature of each replicated record; infinite for a record that does not stop, or that has fewer half cycles.
-    pub fn replicated(&self) -> &[f64] {
-        &self.replicated
-    }
-
     /// The median of the replicated records; `None` if most of them do not show the feature.
     pub fn median(&self) -> Option<f64> {
         let mut sorted = self.replicated.clone();
@@ -75,7 +71,7 @@ impl PredictiveCheck {
     }
 
     /// Records from the posterior hardly ever show the measured feature.
-    pub fn is_surprising(&self) -> bool {
+    fn is_surprising(&self) -> bool {
         !(SURPRISING..=1.0 - SURPRISING).contains(&self.p_value())
     }
 

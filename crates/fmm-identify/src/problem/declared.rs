@@ -8,18 +8,20 @@ use fmm_record::{Quantity, Record};
 use fmm_sim::RungeKutta;
 
 use super::Problem;
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::law::{Law, Motion};
-use crate::machine::{Known, Machine, Terms};
-use crate::quantities::table::{Coordinates, Place, Table};
+use crate::law::Motion;
+use crate::law::naming::Form;
+use crate::machine::{Known, Machine};
+use crate::quantities::table::{Place, Table};
 
 impl Problem<'static> {
     /// The residuals of a `record`, a velocity (m/s) or a displacement (m), as a function of the whole machine: each
     /// number has a value by its name, and keeps it unless it is [`free`](Self::free). The motion begins with the first
     /// sample.
     ///
-    /// [`new`](Self::new) finds all that a record shows; this asks for the coefficient of friction if mass,
+    /// [`of`](Self::of) finds all that a record shows; this asks for the coefficient of friction if mass,
     /// stiffness, damping and load are others: the fit of the thesis' chapter 5.3. Fixed numbers are inputs of its
     /// [`Sensitivity`](fmm_fit::Sensitivity) and [`Refit`](fmm_fit::Refit).
     ///
@@ -73,8 +75,7 @@ impl Problem<'static> {
         let machine = Machine::of_mass_and_stiffness(one, one)?.with_damping(Known::NOTHING)?;
         // Nothing is searched for in the record, which is used as it is.
         let experiments = vec![Experiment::planned(record.clone(), None, false, 1.0, 0.0, None)];
-        let law = Law::of::<F>();
-        let (table, mut parameters) = Table::by(Coordinates::Coefficients, law, &machine, Terms::NONE, &experiments)?;
+        let (table, mut parameters) = Table::by(Form::Coefficient, &Candidate::of::<F>(), &machine, &experiments)?;
         let default = |place: Place| match place {
             Place::Mass | Place::Stiffness | Place::Law(_) => None,
             Place::NormalLoad => Some(1.0),

@@ -7,28 +7,29 @@ use fmm_fit::{Block, EvaluationError};
 use fmm_model::{Bounds, Dual, Parameter, Scalar};
 
 use super::Problem;
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
 use crate::law::along::{Alignment, SampleLocation, locations};
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Machine;
-use crate::machine::terms::{Term, Terms};
+use crate::machine::terms::Term;
 use crate::quantities::table::{Place, Table};
 use crate::threads::Pool;
 
 /// Forces along motions of one problem.
 #[derive(Debug, Clone)]
-pub(super) struct Forces<'a> {
-    records: &'a [ForceRecord],
+pub(crate) struct Forces<'a> {
+    pub(super) records: &'a [ForceRecord],
     /// Of each record the samples that are compared: those whose motion was measured, for every delay.
-    samples: Vec<Range<usize>>,
+    pub(crate) samples: Vec<Range<usize>>,
     /// Index of the first shape, behind the rows of the law. A shape is a term that is one factor times a measured
     /// series.
-    first_shape: usize,
+    pub(crate) first_shape: usize,
     shapes: Vec<Place>,
     asymmetry: Option<usize>,
     load_offset: Option<usize>,
-    delay: Option<usize>,
+    pub(crate) delay: Option<usize>,
     idle: Pool<Buffers>,
 }
 
@@ -72,9 +73,8 @@ impl Sample<'_> {
 impl<'a> Problem<'a> {
     /// The problem of forces along the motions of `records`.
     pub(super) fn of_forces(
-        law: Law,
+        candidate: &Candidate,
         machine: Machine,
-        terms: &Terms,
         records: &'a [ForceRecord],
     ) -> Result<Self, IdentifyError> {
         if machine != Machine::per_unit_mass() {
@@ -83,8 +83,8 @@ impl<'a> Problem<'a> {
                  and a normal load with the record",
             ));
         }
-        let (table, parameters) = Table::of_forces(law, terms, records)?;
-        let longest = table.terms.longest_delay().unwrap_or(0.0);
+        let (table, parameters) = Table::of_forces(candidate, records)?;
+        let longest = table.terms.longest_delay.unwrap_or(0.0);
         let mut samples = Vec::with_capacity(records.len());
         for record in records {
             let times = record.times();
@@ -97,7 +97,7 @@ impl<'a> Problem<'a> {
         }
         let own = |term: Term| table.shared(Place::Term(term));
         let (asymmetry, load_offset, delay) = (own(Term::Asymmetry), own(Term::LoadOffset), own(Term::Delay));
-        let first_shape = law.fitted().count();
+        let first_shape = candidate.law.fitted().count();
         let others = [asymmetry, load_offset, delay].into_iter().flatten().count();
         let shapes = table.rows[first_shape..table.shared - others].iter().map(|row| row.place).collect();
         let block = |(record, samples): (usize, &Range<usize>)| {
@@ -131,9 +131,9 @@ impl<'a> Problem<'a> {
 /// such a sample does not count, and its residual is zero.
 #[derive(Clone, Copy)]
 pub(crate) struct ForceProblem<'p> {
-    forces: &'p Forces<'p>,
+    pub(crate) forces: &'p Forces<'p>,
     table: &'p Table,
-    parameters: &'p [Parameter],
+    pub(crate) parameters: &'p [Parameter],
 }
 
 impl<'p> ForceProblem<'p> {
@@ -145,28 +145,9 @@ impl<'p> ForceProblem<'p> {
         &self.table.family
     }
 
-    pub(crate) fn parameters(&self) -> &'p [Parameter] {
-        self.parameters
-    }
-
-    /// Index of the first row that is no parameter of the law.
-    pub(crate) fn first_shape(&self) -> usize {
-        self.forces.first_shape
-    }
-
-    /// Index of the delay.
-    pub(crate) fn delay(&self) -> Option<usize> {
-        self.forces.delay
-    }
-
-    /// Of each record the samples that are compared.
-    pub(crate) fn samples(&self) -> &'p [Range<usize>] {
-        &self.forces.samples
-    }
-
     /// Residuals of all records.
     fn len(&self) -> usize {
-        self.samples().iter().map(Range::len).sum()
+        self.forces.samples.iter().map(Range::len).sum()
     }
 
     /// Index of the deflection at the beginning of `record`, if it is fitted.
@@ -193,7 +174,7 @@ impl<'p> ForceProblem<'p> {
             delay,
             has_delay: self.forces.delay.is_some(),
             deflection,
-            first: self.samples()[record].start,
+            first: self.forces.samples[record].start,
             locations,
         }
     }
@@ -234,7 +215,7 @@ impl<'p> ForceProblem<'p> {
         self.forces.idle.lend(|buffers| {
             for (record, data) in self.records().iter().enumerate() {
                 self.follow(record, p, buffers)?;
-                let rows = self.samples()[record].clone().zip(&buffers.locations).zip(&buffers.plain);
+                let rows = self.forces.samples[record].clone().zip(&buffers.locations).zip(&buffers.plain);
                 for ((row, location), friction) in rows {
                     let sample = self.sample(record, p, leaps, row, *location);
                     let (residual, by_friction, by_rest) = self.residual(p, &sample, *friction, data.forces[row]);
@@ -263,7 +244,7 @@ impl<'p> ForceProblem<'p> {
     pub(crate) fn counts(&self, p: &[f64]) -> Vec<bool> {
         let (leaps, mut at) = (self.leaps(p), Vec::new());
         let mut counts = Vec::with_capacity(self.len());
-        for (record, samples) in self.records().iter().zip(self.samples()) {
+        for (record, samples) in self.records().iter().zip(&self.forces.samples) {
             locations(&record.motion, samples.clone(), Self::value(p, self.forces.delay), &mut at);
             counts.extend(at.iter().map(|location| location.slides || !leaps));
         }
@@ -278,7 +259,7 @@ impl<'p> ForceProblem<'p> {
 
     fn follow(&self, record: usize, p: &[f64], buffers: &mut Buffers) -> Result<(), EvaluationError> {
         let delay = Self::value(p, self.forces.delay);
-        locations(&self.records()[record].motion, self.samples()[record].clone(), delay, &mut buffers.locations);
+        locations(&self.records()[record].motion, self.forces.samples[record].clone(), delay, &mut buffers.locations);
         let deflection = Self::value(p, self.deflection(record));
         let alignment = self.alignment(record, delay, deflection, &buffers.locations);
         (self.law().along)(&self.law().values(&p[..self.forces.first_shape]), alignment, &mut buffers.plain)
@@ -310,7 +291,7 @@ impl<'p> ForceProblem<'p> {
         let leaps = self.leaps(p);
         let mut jacobian = jacobian;
         self.forces.idle.lend(|buffers| {
-            for (record, samples) in self.samples().iter().enumerate() {
+            for (record, samples) in self.forces.samples.iter().enumerate() {
                 let (own, others) = std::mem::take(&mut residuals).split_at_mut(samples.len());
                 residuals = others;
                 match jacobian.take() {
@@ -345,7 +326,7 @@ impl<'p> ForceProblem<'p> {
         buffers: &mut Buffers,
     ) -> Result<(), EvaluationError> {
         let is_free = |j: &usize| !self.parameters[*j].bounds().is_fixed();
-        let (forces, samples, rows) = (self.forces, self.samples()[record].clone(), residuals.len());
+        let (forces, samples, rows) = (self.forces, self.forces.samples[record].clone(), residuals.len());
         // A deflection is the only row of a record alone.
         let column = |j: usize| rows * j.min(self.table.shared);
         let data = &self.records()[record];
@@ -417,7 +398,6 @@ mod tests {
     use fmm_fit::{Residuals, check_jacobian};
 
     use super::*;
-    use crate::candidate::Candidate;
 
     /// A motion to and fro at unequal steps under a load, with a force that need not fit.
     fn record() -> ForceRecord {
@@ -443,13 +423,12 @@ mod tests {
         ] {
             let candidate = Candidate::named(&format!("{law} + {beside}")).unwrap();
             let records = [record(), record()];
-            let (law, terms) = (*candidate.law(), candidate.terms().clone());
-            let problem = Problem::of(law, Machine::per_unit_mass(), terms, &records).unwrap();
+            let problem = Problem::of(&candidate, Machine::per_unit_mass(), &records).unwrap();
             let mut p = values;
             p.extend([0.3, 0.2, 0.05, 0.4, 2.0, 0.1, -0.2, 0.15, 0.7, 2.3e-3]);
             p.resize(problem.parameters().len(), 0.4);
             let doubt = check_jacobian(&problem, &p).unwrap();
-            assert!(doubt.is_empty(), "{}: {doubt:?}", law.name);
+            assert!(doubt.is_empty(), "{}: {doubt:?}", candidate.law_name());
         }
     }
 }

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use fmm_fit::{Block, EvaluationError, Fit, Residuals};
-use fmm_friction::LawFamily;
 use fmm_model::{Parameter, Scalar};
 use fmm_sim::{Channels, Sampling, Trajectory};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::sight::{Seen, Sight};
-use crate::experiment::{Drive, Experiment, Experiments, scaled};
+use crate::experiment::{Experiment, Experiments, scaled};
 use crate::law::naming::Units;
 use crate::law::{Law, Motion, Simulate};
 use crate::machine::terms::Term;
@@ -20,13 +20,12 @@ use crate::quantities::prior::Prior;
 use crate::quantities::table::{Place, Table};
 
 mod declared;
-pub(crate) mod fitted;
 pub(crate) mod force;
 pub(crate) mod friction_curve;
 mod motion;
 mod parts;
 mod residuals;
-mod starts;
+pub(crate) mod starts;
 pub(crate) mod tangent;
 
 /// The residuals "model less record" of one or several experiments by a law, with exact derivatives.
@@ -39,22 +38,20 @@ pub(crate) mod tangent;
 /// Anything that takes [`Residuals`] can be applied to it; [`identify`](crate::identify) is what most want.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
-    machine: Machine,
+    pub(crate) machine: Machine,
     experiments: Cow<'a, [Experiment]>,
     parameters: Vec<Parameter>,
-    table: Table,
-    prior: Prior,
+    pub(crate) table: Table,
+    pub(crate) prior: Prior,
     blocks: Vec<Block>,
     /// Factors of the residuals of each record (1).
     weights: Vec<f64>,
     /// Standard deviation of the noise in the unit of the residuals.
-    noise: f64,
+    pub(crate) noise: f64,
     /// Relative tolerance (1) of simulations that integrate, if not the engine's own.
     tolerance: Option<f64>,
     /// Simulation without derivatives in place of that of the law.
     euler: Option<Simulate<f64>>,
-    /// True if derivatives by fixed parameters are computed as well.
-    is_complete: bool,
     /// Values with which a fit begins, where they are declared.
     declared: Vec<f64>,
     /// Forces along motions in place of the experiments.
@@ -68,39 +65,22 @@ const WINDOW: usize = 1 << 16;
 const NO_DIRECTION: usize = usize::MAX;
 
 impl<'a> Problem<'a> {
-    /// The problem of `experiments` on `machine` by a law of family `F`.
+    /// The problem of `experiments` on `machine` by a law with its terms.
     ///
     /// # Errors
-    /// [`IdentifyError::Missing`] and [`IdentifyError::WrongRecord`].
-    pub fn new<F: LawFamily>(machine: Machine, experiments: impl Into<Experiments<'a>>) -> Result<Self, IdentifyError> {
-        Self::with_terms::<F>(machine, Terms::NONE, experiments)
-    }
-
-    /// The problem of `experiments` on `machine`, with `terms` beside the law.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new), and [`IdentifyError::Contradiction`], [`IdentifyError::UnknownName`] and
-    /// [`IdentifyError::OutOfRange`].
-    pub fn with_terms<F: LawFamily>(
+    /// [`IdentifyError::Missing`], [`IdentifyError::WrongRecord`], [`IdentifyError::Contradiction`],
+    /// [`IdentifyError::UnknownName`] and [`IdentifyError::OutOfRange`].
+    pub fn of(
+        candidate: &Candidate,
         machine: Machine,
-        terms: Terms,
-        experiments: impl Into<Experiments<'a>>,
-    ) -> Result<Self, IdentifyError> {
-        Self::of(Law::of::<F>(), machine, terms, experiments)
-    }
-
-    pub(crate) fn of(
-        law: Law,
-        machine: Machine,
-        terms: Terms,
         experiments: impl Into<Experiments<'a>>,
     ) -> Result<Self, IdentifyError> {
         let experiments = match experiments.into() {
             Experiments::Vibrations(experiments) => experiments,
-            Experiments::Forces(records) => return Self::of_forces(law, machine, &terms, records),
+            Experiments::Forces(records) => return Self::of_forces(candidate, machine, records),
         };
         require_together(&machine, experiments)?;
-        let (table, parameters) = Table::of(law, &machine, terms, experiments)?;
+        let (table, parameters) = Table::of(candidate, &machine, experiments)?;
         Ok(Self::by(machine, Cow::Borrowed(experiments), table, parameters))
     }
 
@@ -110,7 +90,7 @@ impl<'a> Problem<'a> {
         let calibration = |index: usize| {
             let row = table.rows[index];
             let drive = row.record.and_then(|record| experiments.get(record)?.drive());
-            drive.filter(|_| row.place == Place::DriveGain).map_or(0.0, Drive::calibration_uncertainty)
+            drive.filter(|_| row.place == Place::DriveGain).map_or(0.0, |drive| drive.calibration_uncertainty)
         };
         let prior = Prior::of(&table.rows, |i, j| calibration(i) * calibration(j));
         let weights: Vec<f64> = scaled(&experiments).map(|(_, weight)| weight).collect();
@@ -127,7 +107,6 @@ impl<'a> Problem<'a> {
             noise,
             tolerance: None,
             euler: None,
-            is_complete: false,
             declared: Vec::new(),
             forces: None,
         };
@@ -140,7 +119,7 @@ impl<'a> Problem<'a> {
         let of_record = |(record, experiment): (usize, &Experiment)| {
             Block::new(experiment.rows(), self.table.of_record(record).collect::<Vec<_>>())
         };
-        let known = (self.prior.len() > 0).then(|| Block::new(self.prior.len(), self.prior.indices()));
+        let known = (self.prior.len() > 0).then(|| Block::new(self.prior.len(), self.prior.indices.clone()));
         self.experiments.iter().enumerate().map(of_record).chain(known).collect()
     }
 
@@ -167,32 +146,27 @@ impl<'a> Problem<'a> {
         &self.table.terms
     }
 
-    pub(crate) fn machine(&self) -> &Machine {
-        &self.machine
-    }
-
     pub(crate) fn experiments(&self) -> &[Experiment] {
         &self.experiments
+    }
+
+    /// Its experiments, or the forces along motions in place of them.
+    pub(crate) fn records(&self) -> Experiments<'_> {
+        match &self.forces {
+            Some(forces) => Experiments::Forces(forces.records),
+            None => Experiments::Vibrations(&self.experiments),
+        }
+    }
+
+    /// The law with its terms.
+    pub(crate) fn candidate(&self) -> Candidate {
+        Candidate { law: self.table.family, terms: self.table.terms.clone() }
     }
 
     /// Factor of the residuals of `record` (1).
     #[cfg(feature = "sampler")]
     pub(crate) fn weight(&self, record: usize) -> f64 {
         self.weights[record]
-    }
-
-    pub(crate) fn quantities(&self) -> &Table {
-        &self.table
-    }
-
-    /// Knowledge of parameters before the records are looked at.
-    pub(crate) fn prior(&self) -> &Prior {
-        &self.prior
-    }
-
-    /// Standard deviation of the noise in the unit of the residuals.
-    pub(crate) fn noise(&self) -> f64 {
-        self.noise
     }
 
     /// Number of residuals of records; those of prior knowledge follow.
@@ -204,14 +178,6 @@ impl<'a> Problem<'a> {
     pub(crate) fn without_prior(mut self) -> Self {
         self.prior = Prior::default();
         self.blocks = self.blocks_of_records();
-        self
-    }
-
-    /// The same problem with derivatives by fixed parameters as well, for [`Sensitivity`](fmm_fit::Sensitivity). A fit
-    /// of it would take longer.
-    #[must_use]
-    pub fn with_derivatives_by_inputs(mut self) -> Self {
-        self.is_complete = true;
         self
     }
 
@@ -332,13 +298,13 @@ impl<'a> Problem<'a> {
 
     fn offset(&self, record: usize, p: &[f64]) -> f64 {
         let fitted = self.table.own(record, Place::Offset).map(|index| p[index]);
-        fitted.or_else(|| self.experiments[record].fixed_offset()).unwrap_or(0.0)
+        fitted.or_else(|| self.experiments[record].summary().held_offset).unwrap_or(0.0)
     }
 
     /// Size and shape of the disturbances of `record`.
     fn disturbances<'s>(&'s self, record: usize, p: &'s [f64]) -> impl Iterator<Item = (f64, &'s [f64])> {
         let first = self.table.first_disturbance(record);
-        let shapes = self.experiments[record].shapes();
+        let shapes = &self.experiments[record].shapes;
         shapes.iter().enumerate().map(move |(at, shape)| (p[first + at], shape.as_slice()))
     }
 
@@ -497,7 +463,7 @@ mod tests {
     #[test]
     fn derivatives_of_joint_records_are_those_of_differences() {
         let decays = decays();
-        let problem = Problem::new::<CoulombViscous>(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<CoulombViscous>(), Machine::per_unit_mass(), &decays).unwrap();
         // Off the bounds, so that differences have room.
         let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
         require_derivatives(&problem, &p);
@@ -509,9 +475,9 @@ mod tests {
         let decays = &decays()[..1];
         let other = crate::identify::<CoulombViscous>(&Machine::per_unit_mass(), decays).unwrap();
         let machine = Machine::per_unit_mass();
-        let problem = Problem::new::<Stribeck>(machine, decays).unwrap();
-        let start = problem.beside(other.fitted(), &[other.fitted()], &problem.starts()).unwrap();
-        let law = problem.quantities().of_law();
+        let problem = Problem::of(&Candidate::of::<Stribeck>(), machine, decays).unwrap();
+        let start = problem.beside(&other.fitted, &[&other.fitted], &problem.starts()).unwrap();
+        let law = problem.table.of_law();
         let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
         let known = |name: &str| other.finding(name).unwrap().value();
         let speed = decays[0].scales().1;

@@ -5,9 +5,10 @@ use fmm_model::{Damping, Oscillator, Scalar};
 
 use crate::experiment::Experiment;
 use crate::law::Motion;
+use crate::law::naming::Form;
 use crate::machine::terms::Term;
 use crate::machine::{Machine, Scale};
-use crate::quantities::table::{Coordinates, Place, Table, mass_of_stiffness};
+use crate::quantities::table::{Place, Table, mass_of_stiffness};
 
 impl Table {
     /// The mass (kg) by the shared `values`, where the `machine` or the motion tells it.
@@ -34,8 +35,8 @@ impl Table {
     ) -> Result<Motion<D>, EvaluationError> {
         let fitted = |place| self.shared(place).map(|index| values[index]);
         let mass = self.mass(machine, values);
-        let oscillator = match self.coordinates {
-            Coordinates::PerMass => Oscillator::per_unit_mass(values[0])?,
+        let oscillator = match self.form {
+            Form::PerMass => Oscillator::per_unit_mass(values[0])?,
             _ => Oscillator::new(values[0], values[1])?,
         };
         let known = machine.damping().map(|damping| D::from(damping.value()));
@@ -100,7 +101,7 @@ fn changing<D: Scalar>(experiment: &Experiment, change: D, curvature: Option<D>)
         curvature.map_or(linear, |curvature| linear + curvature * (time * time)).exp()
     };
     let mean = shares.iter().fold(D::from(0.0), |sum, (time, share)| sum + factor(*time) * *share);
-    let end = shares.last().map_or(0.0, |(time, _)| *time) + experiment.guess().frequency().recip();
+    let end = shares.last().map_or(0.0, |(time, _)| *time) + experiment.guess.frequency().recip();
     let interval = end / PIECES as f64;
     (interval, (0..=PIECES).map(|piece| factor(piece as f64 * interval) / mean).collect())
 }

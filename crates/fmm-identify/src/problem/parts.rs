@@ -8,6 +8,7 @@ use fmm_model::Bounds;
 use fmm_record::Quantity;
 
 use super::Problem;
+use crate::candidate::Candidate;
 use crate::experiment::Experiment;
 use crate::experiment::reference;
 
@@ -27,7 +28,7 @@ impl Problem<'_> {
     /// `None` if they have no more.
     pub(crate) fn thinned(&self) -> Option<Vec<Experiment>> {
         let stride = |decay: &Experiment| {
-            let swings = decay.record().duration() * decay.guess().frequency();
+            let swings = decay.record().duration() * decay.guess.frequency();
             let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
             decay.record().len() / enough
         };
@@ -56,7 +57,7 @@ impl Problem<'_> {
         const SLOWEST: f64 = 1e-4;
         const STIFFEST: f64 = 1e5;
         let slowest = SLOWEST * reference(&self.experiments).scales().1;
-        let stiffest = STIFFEST * (2.0 * PI * reference(&self.experiments).guess().frequency()).powi(2);
+        let stiffest = STIFFEST * (2.0 * PI * reference(&self.experiments).guess.frequency()).powi(2);
         let is_per_mass = self.table.is_per_mass();
         for (index, law) in self.law().fitted().enumerate() {
             let powers = self.law().powers(law);
@@ -98,7 +99,6 @@ impl Problem<'_> {
             noise: self.noise,
             tolerance: self.tolerance,
             euler: self.euler,
-            is_complete: self.is_complete,
             declared: self.declared.clone(),
             forces: None,
         };
@@ -110,7 +110,7 @@ impl Problem<'_> {
     /// where one that only this problem has is held.
     pub(crate) fn recast(&self) -> Option<Problem<'_>> {
         let recast = (self.law().recast)()?;
-        Problem::of(recast.family, self.machine, self.terms().clone(), &*self.experiments).ok()
+        Problem::of(&Candidate { law: recast.family, ..self.candidate() }, self.machine, &*self.experiments).ok()
     }
 
     /// The values of this problem where those of the [recast](Self::recast) one have been `found`.
@@ -146,29 +146,29 @@ mod tests {
     fn laws_bend_in_sight() {
         let decays = decays();
         let slowest = 1e-4 * decays[0].scales().1;
-        let stiffest = 1e5 * (2.0 * PI * decays[0].guess().frequency()).powi(2);
+        let stiffest = 1e5 * (2.0 * PI * decays[0].guess.frequency()).powi(2);
         let machine = Machine::per_unit_mass();
-        let lugre = Problem::new::<LuGre>(machine, &decays).unwrap();
+        let lugre = Problem::of(&Candidate::of::<LuGre>(), machine, &decays).unwrap();
         let by_speed = ("stribeck_speed".to_owned(), slowest, f64::INFINITY);
         let by_stiffness = ("contact_stiffness_per_mass".to_owned(), f64::MIN_POSITIVE, stiffest);
         assert_eq!(bounded_in_sight(&lugre), [by_speed.clone(), by_stiffness]);
         // Where the mass is found as well, a stiffness is no square of a frequency.
-        let lugre = Problem::new::<LuGre>(Machine::unknown(), &decays).unwrap();
+        let lugre = Problem::of(&Candidate::of::<LuGre>(), Machine::unknown(), &decays).unwrap();
         assert_eq!(bounded_in_sight(&lugre), [by_speed]);
-        let makkar = Problem::new::<MakkarDixon>(machine, &decays).unwrap();
+        let makkar = Problem::of(&Candidate::of::<MakkarDixon>(), machine, &decays).unwrap();
         let below = |name: &str, lower: f64| (name.to_owned(), lower, slowest.recip());
         let expected = [below("rise", f64::MIN_POSITIVE), below("fall", f64::MIN_POSITIVE), below("level_rise", 0.0)];
         assert_eq!(bounded_in_sight(&makkar), expected);
         // What is held keeps its value.
         let held = Terms::default().holding("rise", 1e9).unwrap();
-        let makkar = Problem::with_terms::<MakkarDixon>(machine, held, &decays).unwrap();
+        let makkar = Problem::of(&Candidate::of::<MakkarDixon>().with(held), machine, &decays).unwrap();
         assert_eq!(bounded_in_sight(&makkar), expected[1..]);
     }
 
     #[test]
     fn each_record_has_its_beginning() {
         let decays = decays();
-        let problem = Problem::new::<Coulomb>(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<Coulomb>(), Machine::per_unit_mass(), &decays).unwrap();
         let beginnings = problem.beginnings(0.9);
         assert_eq!(beginnings.len(), decays.len());
         for (beginning, whole) in beginnings.iter().zip(&decays) {
@@ -181,7 +181,7 @@ mod tests {
     fn a_recast_problem_is_the_same_by_other_values() {
         let decays = decays();
         let machine = Machine::per_unit_mass();
-        let problem = Problem::new::<BoucWen>(machine, &decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<BoucWen>(), machine, &decays).unwrap();
         let recast = problem.recast().unwrap();
         assert_eq!(recast.name(), BoucWenByLevel::NAME);
         let law = [2000.0, 1.0, 0.3, 0.5, 1.65];
@@ -195,10 +195,10 @@ mod tests {
             residuals
         };
         assert_eq!(residuals(&problem, &values), residuals(&recast, &found));
-        assert!(Problem::new::<Coulomb>(machine, &decays).unwrap().recast().is_none());
+        assert!(Problem::of(&Candidate::of::<Coulomb>(), machine, &decays).unwrap().recast().is_none());
         let holding = |name: &str| {
             let held = Terms::default().holding(name, 1.0).unwrap();
-            Problem::with_terms::<BoucWen>(machine, held, &decays).unwrap().recast().is_some()
+            Problem::of(&Candidate::of::<BoucWen>().with(held), machine, &decays).unwrap().recast().is_some()
         };
         assert!(holding("amplitude") && !holding("gamma"), "gamma is no parameter of the recast law");
     }

@@ -43,7 +43,7 @@ impl Problem<'_> {
 
     /// True if derivatives by the parameter at `index` are asked for.
     fn is_wanted(&self, index: usize) -> bool {
-        self.is_complete || !self.parameters[index].bounds().is_fixed()
+        !self.parameters[index].bounds().is_fixed()
     }
 
     /// Writes what the rows of `record` see of `samples`, one for each sample that is used.
@@ -74,7 +74,7 @@ impl Problem<'_> {
                 Place::Offset if experiment.lines().is_none() => column.fill(weight),
                 Place::Offset => self.map(record, &vec![weight; experiment.summary().samples], column)?,
                 Place::Disturbance(at) => {
-                    let shape = &experiment.shapes()[at];
+                    let shape = &experiment.shapes[at];
                     let kept = experiment.kept().iter().flat_map(|range| &shape[range.clone()]);
                     self.map(record, &kept.map(|shape| weight * shape).collect::<Vec<_>>(), column)?;
                 }
@@ -247,11 +247,7 @@ impl Residuals for Problem<'_> {
     }
 
     fn derivatives(&self) -> Derivatives {
-        match (self.euler, self.is_complete) {
-            (Some(_), _) => Derivatives::None,
-            (None, true) => Derivatives::All,
-            (None, false) => Derivatives::Free,
-        }
+        if self.euler.is_some() { Derivatives::None } else { Derivatives::Free }
     }
 
     fn is_cheaper_combined(&self) -> bool {
@@ -277,6 +273,7 @@ mod tests {
     use super::super::WINDOW;
     use super::super::tests::require_derivatives;
     use super::*;
+    use crate::candidate::Candidate;
     use crate::experiment::nuisance::DRIFT;
     use crate::experiment::{Experiment, Preparation, Sensor};
     use crate::machine::{Machine, Terms};
@@ -321,8 +318,8 @@ mod tests {
     #[test]
     fn derivatives_behind_sensors_and_beside_drift_are_those_of_differences() {
         let decays = decays();
-        let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
-        assert!(problem.weights[1] != 1.0 && problem.quantities().directions(0) > DIRECTIONS);
+        let problem = Problem::of(&Candidate::of::<Stribeck>(), Machine::per_unit_mass(), &decays).unwrap();
+        assert!(problem.weights[1] != 1.0 && problem.table.directions(0) > DIRECTIONS);
         require_derivatives(&problem, &values(&problem));
     }
 
@@ -331,7 +328,7 @@ mod tests {
         let decays = decays();
         let terms = Terms::default().with_curved_change().with_linear_damping();
         let decays = &decays[..1];
-        let problem = Problem::with_terms::<Coulomb>(Machine::per_unit_mass(), terms, decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<Coulomb>().with(terms), Machine::per_unit_mass(), decays).unwrap();
         let mut p = values(&problem);
         let change = problem.parameters().iter().position(|parameter| parameter.name() == "friction_change").unwrap();
         p[change] = -0.2;
@@ -341,7 +338,7 @@ mod tests {
     #[test]
     fn residuals_are_the_model_less_the_record_by_weight() {
         let decays = decays();
-        let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<Stribeck>(), Machine::per_unit_mass(), &decays).unwrap();
         let p = values(&problem);
         let mut residuals = vec![f64::NAN; problem.len()];
         problem.evaluate(&p, &mut residuals, None).unwrap();
@@ -364,7 +361,7 @@ mod tests {
     #[test]
     fn a_motion_that_leaps_is_refused() {
         let decays = decays();
-        let problem = Problem::new::<Stribeck>(Machine::per_unit_mass(), &decays).unwrap();
+        let problem = Problem::of(&Candidate::of::<Stribeck>(), Machine::per_unit_mass(), &decays).unwrap();
         let steepest = 1e8 * decays[0].summary().amplitudes.0 / 4.0;
         assert!(problem.require_smooth(0, 0, 4.0, &[0.0, -0.99 * steepest]).is_ok());
         for derivative in [1.01 * steepest, -1.01 * steepest, f64::NAN] {

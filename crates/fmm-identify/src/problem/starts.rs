@@ -7,17 +7,35 @@ use fmm_friction::Role;
 use fmm_model::Parameter;
 
 use super::Problem;
+use crate::candidate::Candidate;
 use crate::experiment::Experiment;
 use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::terms::Term;
-use crate::problem::fitted::{Fall, Fitted};
 use crate::problem::friction_curve::FrictionCurve;
 use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 
 /// Start value of the excess of a static level, as a share of the sliding one (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;
+
+/// A fit by a law with its terms, near which another fit of the same records may begin.
+#[derive(Debug, Clone)]
+pub(crate) struct Fitted {
+    pub(crate) model: Candidate,
+    pub(crate) fit: Fit,
+}
+
+/// Friction that falls with the speed, as residuals ask for it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fall {
+    /// Speed over which it falls by 1/e, as a share of the largest (1).
+    pub(crate) speed: f64,
+    /// Fall over the level of friction (1).
+    pub(crate) size: f64,
+    /// Fall over its standard uncertainty (1).
+    pub(crate) significance: f64,
+}
 
 impl Problem<'_> {
     /// True if a measured force or motion drives one of the records.
@@ -39,7 +57,7 @@ impl Problem<'_> {
         let reference = reference(&self.experiments);
         let hypotheses = match reference.driven_guess() {
             Some(guess) => guess.hypotheses(),
-            None => reference.guess().hypotheses(),
+            None => reference.guess.hypotheses(),
         };
         let expressible = |dissipation: &&Dissipation| {
             (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
@@ -121,7 +139,7 @@ impl Problem<'_> {
                 Place::Position => position,
                 Place::Velocity => velocity,
                 Place::Offset => experiment.first_offset(dissipation),
-                Place::Disturbance(at) => experiment.nuisances()[at].start(),
+                Place::Disturbance(at) => experiment.nuisances[at].start(),
                 Place::Corner => experiment.first_corner().unwrap_or(0.0),
                 _ => 0.0,
             }));
@@ -208,8 +226,9 @@ impl Problem<'_> {
             return None;
         }
         let fitted = &other.fit;
-        let (table, _) = Table::of(other.law, &self.machine, other.terms.clone(), &self.experiments).ok()?;
-        let curve = FrictionCurve::of(&table, &other.terms, fitted.values(), reference(&self.experiments).scales().1)?;
+        let (table, _) = Table::of(&other.model, &self.machine, &self.experiments).ok()?;
+        let curve =
+            FrictionCurve::of(&table, &other.model.terms, fitted.values(), reference(&self.experiments).scales().1)?;
         let own = &fitted.values()[table.shared..];
         let of_that_name = |(value, parameter): (&f64, &Parameter)| {
             let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit.estimates());

@@ -6,7 +6,7 @@ use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use crate::finding::Source;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
-use crate::law::naming::{Level, Units};
+use crate::law::naming::{Form, Units};
 use crate::machine::terms::{CHANGE_PER_HALF_CYCLE, Term};
 use crate::machine::{Machine, Scale};
 use crate::quantities::table::{Place, Table, mass_of_stiffness};
@@ -16,8 +16,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) shared: &'a [f64],
     pub(crate) table: &'a Table,
-    /// Relative errors of the gains of the instrument and of a measured force, as factors (1).
-    pub(crate) gains: [f64; 2],
+    /// Relative error of the gain of the instrument, as a factor (1).
+    pub(crate) gain: f64,
     pub(crate) gain_uncertainty: f64,
 }
 
@@ -95,11 +95,11 @@ impl Inputs<'_> {
             derived.push((Parameter::new(CHANGE_PER_HALF_CYCLE, "w/2f₀", "1"), per_half_cycle));
         }
         // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
-        let by_force = variable(self.gains[1], self.shared.len() + 3);
+        let by_force = variable(1.0, self.shared.len() + 3);
         let to_force = if self.table.is_per_mass() { mass } else { Some(by_force) };
         let load = self.machine.normal_load().map(|load| variable(load.value(), self.shared.len() + 1));
         // A record that reads too much shows too large a force per mass, and nothing of a force.
-        let gain = if self.table.is_per_mass() { variable(self.gains[0], self.shared.len() + 2) } else { D::from(1.0) };
+        let gain = if self.table.is_per_mass() { variable(self.gain, self.shared.len() + 2) } else { D::from(1.0) };
         let Table { family, units, law, .. } = self.table;
         let law_value = |index: usize| variable(self.shared[law + index], law + index);
         let level = family.level().map(law_value);
@@ -110,19 +110,19 @@ impl Inputs<'_> {
             let mut value = law_value(i);
             if let (Role::LevelAbove | Role::Breakaway, Some(level)) = (role, level) {
                 value += level;
-                let stated = units.stated(law_parameter, self.table.coordinates.level());
+                let stated = units.stated(law_parameter, self.table.form);
                 derived.push((stated, if self.table.is_per_mass() { value / gain } else { value * by_force }));
             }
             let Some(force) = to_force.map(|to_force| value * to_force) else { continue };
-            let stated = |level: Level| metric.stated(law_parameter, level);
+            let stated = |form: Form| metric.stated(law_parameter, form);
             if is_coefficient(law_parameter) {
                 if self.is_si() {
                     let force = force / gain;
-                    derived.extend(mass.map(|_| (stated(Level::Force), force)));
-                    derived.extend(load.map(|load| (stated(Level::Mu), force / load)));
+                    derived.extend(mass.map(|_| (stated(Form::Force), force)));
+                    derived.extend(load.map(|load| (stated(Form::Mu), force / load)));
                 }
             } else if mass.is_some() && (role == Role::Slope || is_force(role) && self.is_si()) {
-                derived.push((stated(Level::Force), force));
+                derived.push((stated(Form::Force), force));
             }
         }
         derived
@@ -139,17 +139,15 @@ pub(crate) struct Derived {
 
 /// Quantities that follow from the `shared` values of a fit and from the known inputs of the `machine`.
 pub(crate) fn derived(machine: &Machine, table: &Table, shared: &[f64]) -> Vec<Derived> {
-    Inputs { machine, shared, table, gains: [1.0; 2], gain_uncertainty: 0.0 }.with_gradients()
+    Inputs { machine, shared, table, gain: 1.0, gain_uncertainty: 0.0 }.with_gradients()
 }
 
 /// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of
-/// the machine, and of the errors of the `gains` of the instrument and of a measured force, as factors (1).
+/// the machine, and of the error of the `gain` of the instrument, as a factor (1).
 #[cfg(feature = "sampler")]
-pub(crate) fn values_of_findings(machine: &Machine, table: &Table, values: &[f64], gains: [f64; 2]) -> Vec<f64> {
-    let fitted = values.iter().enumerate().map(|(index, value)| {
-        let by_force = if table.is_scaled_by_force(index) { gains[1] } else { 1.0 };
-        value * gains[0].powf(-table.power_of_gain(index, values)) * by_force
-    });
-    let inputs = Inputs { machine, shared: &values[..table.shared], table, gains, gain_uncertainty: 0.0 };
+pub(crate) fn values_of_findings(machine: &Machine, table: &Table, values: &[f64], gain: f64) -> Vec<f64> {
+    let fitted = values.iter().enumerate();
+    let fitted = fitted.map(|(index, value)| value * gain.powf(-table.power_of_gain(index, values)));
+    let inputs = Inputs { machine, shared: &values[..table.shared], table, gain, gain_uncertainty: 0.0 };
     fitted.chain(inputs.derived::<f64>(0).into_iter().map(|(_, value)| value)).collect()
 }

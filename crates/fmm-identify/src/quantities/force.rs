@@ -2,12 +2,12 @@
 
 use fmm_model::{Bounds, Parameter};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
-use crate::law::Law;
-use crate::law::naming::Units;
+use crate::law::naming::{Form, Units};
 use crate::machine::terms::{Term, Terms};
-use crate::quantities::table::{Builder, Coordinates, Knowledge, Place, Table};
+use crate::quantities::table::{Builder, Knowledge, Place, Table};
 
 /// Samples of delay that are looked for unless a longest delay is given.
 const SAMPLES_OF_DELAY: f64 = 20.0;
@@ -47,29 +47,28 @@ impl Table {
     /// Table and parameters of `family` with `terms` for these records of forces: law, then the terms that are one
     /// factor each, then asymmetry, load offset and delay, then the deflections.
     pub(crate) fn of_forces(
-        family: Law,
-        terms: &Terms,
+        candidate: &Candidate,
         records: &[ForceRecord],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
+        let Candidate { law: family, mut terms } = candidate.clone();
         terms.require_force()?;
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::two_dampings(family.name));
         }
         family.require_units()?;
-        require_records(terms, records)?;
+        require_records(&terms, records)?;
         let first = &records[0];
         let units = Units::new(first.position_unit(), first.force_unit());
-        let coordinates = if first.loads.is_some() { Coordinates::Coefficients } else { Coordinates::Forces };
-        let mut terms = terms.clone();
+        let form = if first.loads.is_some() { Form::Coefficient } else { Form::Force };
         let shortest = records.iter().map(ForceRecord::interval).fold(f64::INFINITY, f64::min);
-        let longest = terms.longest_delay().unwrap_or(SAMPLES_OF_DELAY * shortest);
+        let longest = terms.longest_delay.unwrap_or(SAMPLES_OF_DELAY * shortest);
         if terms.has(Term::Delay) {
             // Other records are fitted and predicted with the delays that these allow.
             terms = terms.with_delay_up_to(longest);
         }
         let mut rows = Builder::default();
         for (number, parameter) in family.fitted().enumerate() {
-            rows.free(Place::Law(number), units.fitted(parameter, coordinates.level()));
+            rows.free(Place::Law(number), units.fitted(parameter, form));
         }
         let is_shape = |term: &Term| !matches!(term, Term::Asymmetry | Term::LoadOffset | Term::Delay);
         let (shapes, others): (Vec<Term>, Vec<Term>) = terms.iter().partition(is_shape);
@@ -104,8 +103,7 @@ impl Table {
         let natural = parameters.iter().map(Parameter::bounds).collect();
         let of_motion = vec![0; records.len()];
         let (oscillator, law) = (0, 0);
-        let mut table =
-            Self { family, terms, units, coordinates, rows, natural, oscillator, law, shared, own, of_motion };
+        let mut table = Self { family, terms, units, form, rows, natural, oscillator, law, shared, own, of_motion };
         table.settle(&mut parameters)?;
         Ok((table, parameters))
     }

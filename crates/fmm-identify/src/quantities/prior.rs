@@ -13,12 +13,12 @@ use crate::quantities::table::{Knowledge, Row};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Prior {
     /// Rows of the table, in their order.
-    indices: Vec<usize>,
+    pub(crate) indices: Vec<usize>,
     /// x₀.
     means: Vec<f64>,
-    sources: Vec<Source>,
+    pub(crate) sources: Vec<Source>,
     /// V, row by row.
-    covariance: Vec<f64>,
+    pub(crate) covariance: Vec<f64>,
     /// L⁻¹, row by row.
     whitening: Vec<f64>,
 }
@@ -47,21 +47,6 @@ impl Prior {
     /// Number of residuals, one a quantity.
     pub(crate) fn len(&self) -> usize {
         self.indices.len()
-    }
-
-    /// Rows of the table on which the residuals depend.
-    pub(crate) fn indices(&self) -> &[usize] {
-        &self.indices
-    }
-
-    /// Source of each quantity.
-    pub(crate) fn sources(&self) -> &[Source] {
-        &self.sources
-    }
-
-    /// V, row by row.
-    pub(crate) fn covariance(&self) -> &[f64] {
-        &self.covariance
     }
 
     /// V⁻¹, row by row.
@@ -138,7 +123,7 @@ mod tests {
         let rows = [known(1.0, 0.05), free, known(1.0, 0.04)];
         let shared = 0.03 * 0.03;
         let prior = Prior::of(&rows, |_, _| shared);
-        assert_eq!(prior.indices(), [0, 2]);
+        assert_eq!(prior.indices, [0, 2]);
         let mut residuals = [0.0; 2];
         prior.write_residuals(&[1.02, 7.0, 0.95], 3.0, &mut residuals);
         let (a, b, c) = (0.05f64.powi(2), 0.04f64.powi(2), shared);

@@ -7,12 +7,13 @@ use std::ops::Range;
 use fmm_friction::Role;
 use fmm_model::{Bounds, Parameter, Restoring, Rounded, Scalar};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, reference};
 use crate::finding::Source;
 use crate::law::Law;
 use crate::law::dimension::is_force;
-use crate::law::naming::{Level, Units};
+use crate::law::naming::{Form, Units};
 use crate::machine::terms::{Term, Terms};
 use crate::machine::{Known, Machine, Scale};
 
@@ -76,28 +77,6 @@ pub(crate) struct Row {
     pub(crate) knowledge: Knowledge,
 }
 
-/// Numbers by which the motion is described.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Coordinates {
-    /// Frequency, and forces per mass: all that a free vibration shows.
-    PerMass,
-    /// Mass, stiffness and forces.
-    Forces,
-    /// Mass, stiffness, damping and normal load as they are declared, and the law by its own coefficients.
-    Coefficients,
-}
-
-impl Coordinates {
-    /// Meaning of the level of a law.
-    pub(crate) const fn level(self) -> Level {
-        match self {
-            Self::PerMass => Level::PerMass,
-            Self::Forces => Level::Force,
-            Self::Coefficients => Level::Coefficient,
-        }
-    }
-}
-
 /// Rows of a problem in their order: oscillator, terms beside the law, law, then for each record its initial state, its
 /// drive, its offset, its disturbances and its sensor.
 #[derive(Debug, Clone)]
@@ -107,7 +86,9 @@ pub(crate) struct Table {
     pub(crate) terms: Terms,
     /// Units of the motion and of forces.
     pub(crate) units: Units,
-    pub(crate) coordinates: Coordinates,
+    /// Form of its forces: per mass beside a frequency, as all that a free vibration shows; as forces beside mass and
+    /// stiffness; as coefficients beside mass, stiffness, damping and normal load as they are declared.
+    pub(crate) form: Form,
     pub(crate) rows: Vec<Row>,
     /// Bounds of each row by its nature.
     pub(crate) natural: Vec<Bounds>,
@@ -160,11 +141,11 @@ const MASS: Parameter = Parameter::new("mass", "m", "kg").bounded(Bounds::POSITI
 const STIFFNESS: Parameter = Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE);
 
 /// The rows of the oscillator.
-fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordinates, rows: &mut Builder) {
+fn oscillator(machine: &Machine, experiments: &[Experiment], form: Form, rows: &mut Builder) {
     let is_forced = experiments.iter().any(Experiment::is_forced);
     let known = |known: Known, source| Knowledge::of(known, source);
-    match (coordinates, machine.scale()) {
-        (Coordinates::PerMass, scale) => {
+    match (form, machine.scale()) {
+        (Form::PerMass, scale) => {
             let bounds = reference(experiments).frequency_bounds();
             rows.free(Place::Frequency, Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds));
             // A free vibration does not depend on it: there it makes forces of forces per mass, and nothing else.
@@ -187,7 +168,7 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordi
             rows.free(Place::Stiffness, STIFFNESS);
         }
     }
-    let is_declared = coordinates == Coordinates::Coefficients;
+    let is_declared = form == Form::Coefficient;
     if let Some(damping) = machine.damping().filter(|damping| is_declared || damping.uncertainty() > 0.0) {
         let per_mass = machine.scale() == Scale::PerUnitMass;
         let (name, symbol, unit) = match (is_declared, per_mass) {
@@ -211,7 +192,7 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], coordinates: Coordi
 fn knowledge_of_change(machine: &Machine, record: &Experiment) -> Knowledge {
     machine.steadiness().map_or(Knowledge::Free, |for_each_half_cycle| Knowledge::Prior {
         value: 0.0,
-        uncertainty: for_each_half_cycle * 2.0 * record.guess().frequency(),
+        uncertainty: for_each_half_cycle * 2.0 * record.guess.frequency(),
         source: Source::Steadiness,
     })
 }
@@ -245,7 +226,7 @@ fn of_experiment(
         let longest = drive.longest_delay();
         if longest > 0.0 {
             let delay = Parameter::named(named("delay"), "τ", "s").bounded(Bounds::new(-longest, longest)?);
-            let known = drive.delay_uncertainty().map_or(Knowledge::Free, |uncertainty| Knowledge::Prior {
+            let known = drive.delay_uncertainty.map_or(Knowledge::Free, |uncertainty| Knowledge::Prior {
                 value: 0.0,
                 uncertainty,
                 source: Source::Timing,
@@ -255,11 +236,11 @@ fn of_experiment(
         }
     }
     let unit = experiment.record().unit();
-    if experiment.fixed_offset().is_none() {
+    if experiment.summary().held_offset.is_none() {
         push(Place::Offset, Parameter::named(named("offset"), "b", unit.to_owned()), Knowledge::Free);
     }
     let number = if experiments.len() == 1 { String::new() } else { format!("_{}", record + 1) };
-    for (at, disturbance) in experiment.nuisances().iter().enumerate() {
+    for (at, disturbance) in experiment.nuisances.iter().enumerate() {
         push(Place::Disturbance(at), disturbance.parameter(at, &number, unit), Knowledge::Free);
     }
     if experiment.sensor().has_free_corner() {
@@ -271,28 +252,27 @@ fn of_experiment(
 }
 
 impl Table {
-    /// Table and parameters of `family` with `terms` for these experiments.
+    /// Table and parameters of a law with its terms for these experiments.
     pub(crate) fn of(
-        family: Law,
+        candidate: &Candidate,
         machine: &Machine,
-        terms: Terms,
         experiments: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
-        let coordinates = match machine.scale() {
-            Scale::Unknown | Scale::MassAndStiffness(..) => Coordinates::Forces,
-            _ => Coordinates::PerMass,
+        let form = match machine.scale() {
+            Scale::Unknown | Scale::MassAndStiffness(..) => Form::Force,
+            _ => Form::PerMass,
         };
-        Self::by(coordinates, family, machine, terms, experiments)
+        Self::by(form, candidate, machine, experiments)
     }
 
-    /// The same by these `coordinates`.
+    /// The same by these `form`.
     pub(crate) fn by(
-        coordinates: Coordinates,
-        family: Law,
+        form: Form,
+        candidate: &Candidate,
         machine: &Machine,
-        terms: Terms,
         experiments: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
+        let Candidate { law: family, terms } = candidate.clone();
         family.require_units()?;
         terms.require_vibration()?;
         if terms.has_linear_damping() && family.has_slope() {
@@ -310,12 +290,11 @@ impl Table {
         let reference = reference(experiments);
         require_swing(machine, reference)?;
         let is_driven = experiments.iter().any(|experiment| experiment.drive().is_some());
-        let is_declared = coordinates == Coordinates::Coefficients;
+        let is_declared = form == Form::Coefficient;
         let family = if is_driven || is_declared { family.with_breakaway() } else { family };
         let units = Units::of(reference.record());
-        let level = coordinates.level();
         let mut rows = Builder::default();
-        oscillator(machine, experiments, coordinates, &mut rows);
+        oscillator(machine, experiments, form, &mut rows);
         let oscillator = rows.rows.len();
         for (term, parameter) in terms.iter().zip(terms.parameters(&units.position)) {
             if term == Term::Change {
@@ -326,7 +305,7 @@ impl Table {
         }
         let law = rows.rows.len();
         for (number, parameter) in family.fitted().enumerate() {
-            let parameter = if is_declared { parameter.parameter().clone() } else { units.fitted(parameter, level) };
+            let parameter = if is_declared { parameter.parameter().clone() } else { units.fitted(parameter, form) };
             rows.free(Place::Law(number), parameter);
         }
         let shared = rows.rows.len();
@@ -337,8 +316,7 @@ impl Table {
         }
         let Builder { rows, parameters } = rows;
         let natural = parameters.iter().map(Parameter::bounds).collect();
-        let mut table =
-            Self { family, terms, units, coordinates, rows, natural, oscillator, law, shared, own, of_motion };
+        let mut table = Self { family, terms, units, form, rows, natural, oscillator, law, shared, own, of_motion };
         let mut parameters = parameters;
         table.settle(&mut parameters)?;
         Ok((table, parameters))
@@ -375,7 +353,7 @@ impl Table {
 
     /// True if forces are per mass, as a free vibration shows them.
     pub(crate) fn is_per_mass(&self) -> bool {
-        self.coordinates == Coordinates::PerMass
+        self.form == Form::PerMass
     }
 
     /// Index of a row that all records share.

@@ -5,7 +5,9 @@ mod serialised;
 
 use std::fmt;
 
-use crate::finding::{Contribution, Finding, name_width};
+use fmm_uq::Contribution;
+
+use crate::finding::{Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
 use crate::judgement::{Comparison, ScoreTest};
@@ -34,14 +36,15 @@ impl Identification {
 
 /// The sources of an uncertainty that has several, the largest first.
 fn write_sources(f: &mut fmt::Formatter<'_>, finding: &Finding) -> fmt::Result {
-    let mut parts: Vec<Contribution> = finding.contributions().collect();
+    let Some(budget) = finding.budget() else { return Ok(()) };
+    let mut parts: Vec<Contribution<'_>> = budget.contributions().collect();
     if parts.len() < 2 {
         return Ok(());
     }
     parts.sort_by(|a, b| b.share.total_cmp(&a.share));
-    let text = |part: &Contribution| match (100.0 * part.share).round() {
-        share if share < 1.0 => format!("{} below 1 %", part.source),
-        share => format!("{} {share} %", part.source),
+    let text = |part: &Contribution<'_>| match (100.0 * part.share).round() {
+        share if share < 1.0 => format!("{} below 1 %", part.input.name()),
+        share => format!("{} {share} %", part.input.name()),
     };
     let parts: Vec<String> = parts.iter().map(text).collect();
     writeln!(f, "  u² of {}: {}", finding.parameter().name(), parts.join(", "))
@@ -90,7 +93,7 @@ impl Comparison {
             if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =
             self.not_excluded().map(Identification::law).filter(|law| *law != preferred.law()).collect();
-        let is_explained = !preferred.residual_structure().is_structured();
+        let is_explained = !preferred.structure.is_structured();
         let is_alone = self.identifications().len() == 1;
         let sure = match (self.is_decided(), others.is_empty()) {
             _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),
@@ -154,8 +157,7 @@ impl fmt::Display for Comparison {
         }
         let significant: Vec<&ScoreTest> = self.score_tests().iter().filter(|test| test.is_significant()).collect();
         for test in &significant {
-            let times = test.significance();
-            writeln!(f, "  sign of {}: {times:.1} standard uncertainties", test.extension)?;
+            writeln!(f, "  {test}")?;
         }
         let is_simple = matches!(self.preferred().family().dry_name(), None | Some("coulomb"));
         if significant.is_empty() && !self.score_tests().is_empty() && is_simple {

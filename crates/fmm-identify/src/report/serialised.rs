@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use fmm_fit::EstimateStatus;
+use fmm_uq::{Budget, Contribution};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::experiment::ImpactSummary;
 use crate::experiment::RecordSummary;
-use crate::finding::{Contribution, Finding, Origin};
+use crate::finding::{Finding, Origin};
 use crate::identification::Identification;
 use crate::judgement::{Comparison, ScoreTest};
 
@@ -22,7 +22,8 @@ impl Serialize for Finding {
         };
         // An infinite number of them is null, as JSON has none.
         let freedom = Some(self.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
-        let contributions: Vec<Contribution> = self.contributions().collect();
+        let budget = self.budget();
+        let contributions: Vec<Part<'_>> = budget.iter().flat_map(Budget::contributions).map(Part).collect();
         let mut document = serializer.serialize_struct("Finding", 7)?;
         document.serialize_field("value", &self.value())?;
         document.serialize_field("u", &self.uncertainty())?;
@@ -36,13 +37,15 @@ impl Serialize for Finding {
 }
 
 /// Source of a part of an uncertainty, with u and its share of the variance.
-impl Serialize for Contribution {
+struct Part<'a>(Contribution<'a>);
+
+impl Serialize for Part<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let freedom = Some(self.degrees_of_freedom).filter(|freedom| freedom.is_finite());
+        let freedom = Some(self.0.input.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
         let mut document = serializer.serialize_struct("Contribution", 4)?;
-        document.serialize_field("source", &self.source.to_string())?;
-        document.serialize_field("u", &self.uncertainty)?;
-        document.serialize_field("share", &self.share)?;
+        document.serialize_field("source", self.0.input.name())?;
+        document.serialize_field("u", &self.0.uncertainty)?;
+        document.serialize_field("share", &self.0.share)?;
         document.serialize_field("degrees_of_freedom", &freedom)?;
         document.end()
     }
@@ -70,29 +73,6 @@ impl Serialize for Identification {
         document.serialize_field("outcome", &self.fit().outcome().to_string())?;
         document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
         document.serialize_field("warnings", &warnings)?;
-        document.end()
-    }
-}
-
-/// An impact in SI units; pairs are a value and its standard uncertainty.
-impl Serialize for ImpactSummary {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let pair = |estimated: fmm_model::Estimated| [estimated.value, estimated.uncertainty];
-        let mut document = serializer.serialize_struct("ImpactSummary", 14)?;
-        document.serialize_field("samples", &self.samples)?;
-        document.serialize_field("rate_hz", &self.rate)?;
-        document.serialize_field("begin_s", &self.begin)?;
-        document.serialize_field("impulse", &pair(self.impulse))?;
-        document.serialize_field("level", &self.level)?;
-        document.serialize_field("duration_s", &self.duration)?;
-        document.serialize_field("further_hits", &self.further_hits.len())?;
-        document.serialize_field("overloads", &[self.overloads.0, self.overloads.1])?;
-        document.serialize_field("force_offset", &pair(self.force_offset))?;
-        document.serialize_field("force_noise", &self.force_noise)?;
-        document.serialize_field("velocity_offset", &pair(self.velocity_offset))?;
-        document.serialize_field("velocity_noise", &self.velocity_noise)?;
-        document.serialize_field("spikes", &self.spikes)?;
-        document.serialize_field("rest_s", &self.rest)?;
         document.end()
     }
 }

@@ -25,14 +25,14 @@ impl Knowledge {
     /// Knowledge in `fit` by a `prior`, beside records with noise of standard deviation `noise`; `unit` is an element
     /// of (JᵀJ)⁻¹, 0 for parameters that are not determined.
     pub(crate) fn of(prior: &Prior, noise: f64, fit: &Fit, unit: impl Fn(usize, usize) -> f64) -> Self {
-        let (count, indices) = (prior.len(), prior.indices());
+        let (count, indices) = (prior.len(), &prior.indices);
         let precision = prior.precision();
         let slope = |row: usize, of: usize| {
             let sum: f64 = (0..count).map(|k| unit(row, indices[k]) * precision[k * count + of]).sum();
             noise * noise * sum
         };
         let slopes = (0..count).map(|of| (0..fit.values().len()).map(|row| slope(row, of)).collect()).collect();
-        Self { sources: prior.sources().to_vec(), slopes, covariance: prior.covariance().to_vec() }
+        Self { sources: prior.sources.clone(), slopes, covariance: prior.covariance.clone() }
     }
 
     /// Number of quantities that were known beforehand.

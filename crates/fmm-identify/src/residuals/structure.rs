@@ -59,7 +59,7 @@ impl ResidualStructure {
 
     /// Neighbouring residuals are alike: the law misses something, or the noise is not white.
     pub(crate) fn is_correlated(&self) -> bool {
-        self.is_noisy() && are_correlated(self.autocorrelation_time)
+        self.is_noisy() && self.autocorrelation_time > CORRELATION_TIME
     }
 
     /// The law misses something that the record shows.
@@ -85,11 +85,6 @@ impl ResidualStructure {
     }
 }
 
-/// Residuals with this autocorrelation time (samples) are not independent.
-pub(crate) fn are_correlated(autocorrelation_time: f64) -> bool {
-    autocorrelation_time > CORRELATION_TIME
-}
-
 /// Covariance of the estimates, for the noise that the residuals show.
 ///
 /// ```text
@@ -112,11 +107,13 @@ pub(crate) struct Covariance {
     /// ν of each estimate (1).
     degrees_of_freedom: Vec<f64>,
     /// Independent residuals with the variances of the estimates, on average over these (1).
-    effective_count: f64,
-    inflation: f64,
-    noise: ResidualNoise,
+    pub(crate) effective_count: f64,
+    /// Largest ratio of an uncertainty to that of independent residuals (1).
+    pub(crate) inflation: f64,
+    /// Noise that the residuals show.
+    pub(crate) noise: ResidualNoise,
     is_white: bool,
-    knowledge: Knowledge,
+    pub(crate) knowledge: Knowledge,
 }
 
 impl Covariance {
@@ -131,10 +128,10 @@ impl Covariance {
     fn with_knowledge(mut self, problem: &Problem<'_>, fit: &Fit) -> Self {
         let variance = fit.residual_standard_deviation().map_or(0.0, |s| s * s).max(f64::MIN_POSITIVE);
         let unit = |i: usize, j: usize| Self::of_white_noise(fit, i, j).map_or(0.0, |covariance| covariance / variance);
-        let knowledge = Knowledge::of(problem.prior(), problem.noise(), fit, unit);
+        let knowledge = Knowledge::of(&problem.prior, problem.noise, fit, unit);
         if !knowledge.is_empty() {
             // White residuals of the knowledge are among those of the fit; the noise of the records has none.
-            let counted = if self.is_white { variance / problem.noise().powi(2) } else { 0.0 };
+            let counted = if self.is_white { variance / problem.noise.powi(2) } else { 0.0 };
             for (at, element) in self.elements.iter_mut().enumerate() {
                 let share = knowledge.pair(at / self.count, at % self.count);
                 *element = element.map(|element| element + share * (1.0 - counted));
@@ -142,11 +139,6 @@ impl Covariance {
         }
         self.knowledge = knowledge;
         self
-    }
-
-    /// Number of quantities that were known before the fit, each with a residual of its own.
-    pub(crate) fn known_beforehand(&self) -> usize {
-        self.knowledge.len()
     }
 
     /// Share of prior knowledge in the variance of a quantity with this `gradient` over the first estimates, by source.
@@ -244,7 +236,7 @@ impl Covariance {
                     rows,
                     signal: structure.is_noisy().then_some(signals[record].as_slice()),
                     period: problem.experiments()[record].record().rate()
-                        / problem.experiments()[record].guess().frequency(),
+                        / problem.experiments()[record].guess.frequency(),
                     columns,
                     weights,
                     plateaus: problem.experiments()[record].stays(),
@@ -291,21 +283,6 @@ impl Covariance {
         }
         let whole: f64 = parts().map(|(_, part)| part).sum();
         parts().map(|(freedom, part)| part / whole / freedom).sum::<f64>().recip()
-    }
-
-    /// Independent residuals with the variances of the estimates, as the harmonic mean over these (1).
-    pub(crate) fn effective_count(&self) -> f64 {
-        self.effective_count
-    }
-
-    /// Largest ratio of an uncertainty to that of independent residuals.
-    pub(crate) fn inflation(&self) -> f64 {
-        self.inflation
-    }
-
-    /// The noise behind it.
-    pub(crate) fn noise_of_residuals(&self) -> &ResidualNoise {
-        &self.noise
     }
 }
 

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
-    Candidate, Experiment, Identification, IdentifyError, Preparation, Sensor, Terms, Warning, compare, identify,
-    identify_with,
+    Candidate, Experiment, Identification, IdentifyError, Inquiry, Preparation, Sensor, Terms, Warning, compare,
+    identify,
 };
 use fmm_record::{Quantity, Record};
 
@@ -136,7 +136,7 @@ fn damping_does_not_know_the_gain() {
     let terms = Terms::default().with_linear_damping();
     let [known, uncertain] = [0.0, 0.05].map(|u| {
         let experiment = Experiment::ring_down(&record, &Preparation::default().gain_uncertainty(u)).unwrap();
-        identify_with::<Coulomb>(&machine(), &terms, &[experiment]).unwrap()
+        Inquiry::of(&machine(), &[experiment]).candidate(&Candidate::of::<Coulomb>().with(terms.clone())).unwrap()
     });
     let u = |found: &Identification, name: &str| found.finding(name).unwrap().uncertainty().unwrap();
     for name in ["damping_per_mass", "natural_frequency_hz"] {

@@ -96,7 +96,8 @@ fn a_mass_that_is_given_is_one_more_observation() {
         let expected = (of_record.powi(-2) + given_u.powi(-2)).powf(-0.5);
         assert!((u(&both, "mass") / expected - 1.0).abs() < 0.02, "{} for {expected}", u(&both, "mass"));
         let friction = both.finding("friction_force").unwrap();
-        let by_mass = friction.contributions().find(|part| part.source == Source::Mass).unwrap();
+        let budget = friction.budget().unwrap();
+        let by_mass = budget.contributions().find(|part| part.input.name() == Source::Mass.to_string()).unwrap();
         assert!(by_mass.uncertainty > 0.0 && by_mass.share < 1.0, "{by_mass:?}");
         let (least, most) = (u(&exact, "friction_force"), u(&alone, "friction_force"));
         let found = u(&both, "friction_force");

@@ -3,7 +3,7 @@
 use fmm_fit::{Residuals, check_jacobian};
 use fmm_friction::CoulombViscous;
 use fmm_identify::{
-    Drive, Experiment, Identification, ImpactTrial, Known, Machine, Preparation, Problem, Search, Sensor, identify,
+    Candidate, Drive, Experiment, Identification, ImpactTrial, Known, Machine, Preparation, Problem, Sensor, identify,
     search,
 };
 use fmm_record::{Quantity, Record};
@@ -115,7 +115,7 @@ fn a_blow_and_a_ring_down_are_compared_together() {
     let ring_down = Experiment::ring_down(&free, &Preparation::default()).unwrap();
     let blow = Experiment::impact(&trial(&force, &velocity, 1.03, 1e-3, 5)).unwrap();
     let alone = identify::<CoulombViscous>(&machine(), std::slice::from_ref(&blow)).unwrap();
-    let comparison = search(&machine(), &[ring_down, blow], &Search::default()).unwrap();
+    let comparison = search(&machine(), &[ring_down, blow]).unwrap();
     let best = comparison.preferred();
     println!("{comparison}");
     assert_eq!(best.law(), "coulomb_viscous");
@@ -152,7 +152,7 @@ fn gain_and_delay_of_a_drive_are_found() {
         let finding = found.finding(name).unwrap();
         assert!((finding.value() - truth).abs() < 4.0 * u(&found, name), "{name} {}", finding.value());
     }
-    let problem = Problem::new::<CoulombViscous>(machine(), &experiments).unwrap();
+    let problem = Problem::of(&Candidate::of::<CoulombViscous>(), machine(), &experiments).unwrap();
     let mismatches = check_jacobian(&problem, found.fit().values()).unwrap();
     assert!(mismatches.is_empty(), "{mismatches:?}");
     assert_eq!(problem.parameters().iter().filter(|parameter| parameter.name() == "delay").count(), 1);

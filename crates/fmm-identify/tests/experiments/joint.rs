@@ -3,7 +3,7 @@
 use fmm_fit::{Residuals, check_jacobian};
 use fmm_friction::CoulombStatic;
 use fmm_identify::{
-    Drive, Experiment, Identification, IdentifyError, Preparation, Problem, Sensor, Terms, identify, identify_with,
+    Candidate, Drive, Experiment, Identification, IdentifyError, Inquiry, Preparation, Problem, Sensor, Terms, identify,
 };
 use fmm_record::{Quantity, Record};
 
@@ -54,7 +54,8 @@ fn experiments(motions: &Motions, seed: u64) -> [Experiment; 3] {
 }
 
 fn found(experiments: &[Experiment]) -> Result<Identification, IdentifyError> {
-    identify_with::<CoulombStatic>(&machine(), &Terms::default().with_linear_damping(), experiments)
+    Inquiry::of(&machine(), experiments)
+        .candidate(&Candidate::of::<CoulombStatic>().with(Terms::default().with_linear_damping()))
 }
 
 /// A ring-down without contact, one with contact and a slow ramp tell damping, sliding and static level apart; single
@@ -109,8 +110,8 @@ fn loads_of_their_own_scale_friction() {
     };
     let experiments =
         [of(LOAD), of(0.5 * LOAD).with_load_factor(0.5).unwrap(), of(2.0 * LOAD).with_load_factor(2.0).unwrap()];
-    let found =
-        identify_with::<fmm_friction::Coulomb>(&machine(), &Terms::default().with_linear_damping(), &experiments);
+    let found = Inquiry::of(&machine(), &experiments)
+        .candidate(&Candidate::of::<fmm_friction::Coulomb>().with(Terms::default().with_linear_damping()));
     let found = found.unwrap();
     assert!((found.finding("mu").unwrap().value() - SLIDING).abs() < 1e-9, "{found}");
     assert!((found.finding("damping_per_mass").unwrap().value() - DAMPING / MASS).abs() < 1e-8, "{found}");
@@ -130,7 +131,7 @@ fn rows_are_weighed_and_their_derivatives_are_right() {
     let sensor = Sensor::default().with_free_low_pass(2).unwrap();
     let mixed = [sliding.seen_by(sensor).unwrap(), lifted, pushed];
     let terms = Terms::default().with_linear_damping();
-    let problem = Problem::with_terms::<CoulombStatic>(machine(), terms, &mixed).unwrap();
+    let problem = Problem::of(&Candidate::of::<CoulombStatic>().with(terms), machine(), &mixed).unwrap();
     let fit = found(&mixed).unwrap();
     let mut rows = fit.fit().residuals();
     let rms = |rows: &[f64]| (rows.iter().map(|row| row * row).sum::<f64>() / rows.len() as f64).sqrt();

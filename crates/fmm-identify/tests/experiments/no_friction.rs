@@ -1,7 +1,7 @@
 //! A machine that no dry friction brakes.
 
 use fmm_friction::Viscous;
-use fmm_identify::{Candidate, Experiment, Machine, Preparation, Search, Warning, compare, search};
+use fmm_identify::{Candidate, Experiment, Machine, Preparation, Warning, compare, search};
 use fmm_model::{Damping, Oscillator};
 use fmm_record::Quantity;
 use fmm_sim::{Sampling, Scenario, simulate};
@@ -25,7 +25,7 @@ fn a_level_that_is_not_there_misleads_nobody() {
         levels.push(found.preferred().finding("friction_per_mass").unwrap().value());
         let is_misled = |warning: &Warning| matches!(warning, Warning::Misled { .. });
         assert!(!found.warnings().iter().any(is_misled), "seed {seed}: {found}");
-        let found = search(&Machine::per_unit_mass(), &[decay], &Search::default()).unwrap();
+        let found = search(&Machine::per_unit_mass(), &[decay]).unwrap();
         assert_eq!(found.preferred().law(), "viscous + quadratic", "seed {seed}: {found}");
     }
     assert!(levels.iter().any(|level| *level > 0.0), "m/s²: {levels:?}");

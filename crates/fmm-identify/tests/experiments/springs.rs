@@ -2,7 +2,7 @@
 
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
-    Candidate, Experiment, IdentifyError, Machine, Preparation, Search, Terms, Warning, compare, identify_with, search,
+    Candidate, Experiment, IdentifyError, Inquiry, Machine, Preparation, Terms, Warning, compare, search,
 };
 use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_record::Quantity;
@@ -30,7 +30,9 @@ fn springs_come_back() {
         let motion = motion(cubic, quintic, Damping::none());
         let record = record(&motion, 1e-4, 5, Quantity::Displacement, "rad");
         let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-        let found = identify_with::<CoulombViscous>(&Machine::per_unit_mass(), &terms, &[experiment]).unwrap();
+        let found = Inquiry::of(&Machine::per_unit_mass(), &[experiment])
+            .candidate(&Candidate::of::<CoulombViscous>().with(terms.clone()))
+            .unwrap();
         for (name, truth) in [("cubic_spring", cubic), ("quintic_spring", quintic), ("friction_per_mass", 0.2)] {
             let finding = found.finding(name).unwrap();
             let (error, u) = ((finding.value() - truth).abs(), finding.uncertainty().unwrap());
@@ -47,7 +49,9 @@ fn springs_come_back() {
 fn come_back(motion: &[f64], seed: u64, terms: &Terms, truths: &[(&str, f64, f64)]) {
     let record = record(motion, 1e-4, seed, Quantity::Displacement, "rad");
     let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-    let found = identify_with::<CoulombViscous>(&Machine::per_unit_mass(), terms, &[experiment]).unwrap();
+    let found = Inquiry::of(&Machine::per_unit_mass(), &[experiment])
+        .candidate(&Candidate::of::<CoulombViscous>().with(terms.clone()))
+        .unwrap();
     for (name, truth, most) in truths {
         let finding = found.finding(name).unwrap();
         let (error, u) = ((finding.value() - truth).abs(), finding.uncertainty().unwrap());
@@ -94,7 +98,8 @@ fn a_pendulum_has_no_further_spring() {
     let record = record(&motion, 1e-4, 6, Quantity::Displacement, "rad");
     let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let machine = Machine::per_unit_mass().with_restoring(Restoring::sine(1.0).unwrap());
-    let refused = identify_with::<Coulomb>(&machine, &Terms::default().with_cubic_spring(), &[experiment]);
+    let refused = Inquiry::of(&machine, &[experiment])
+        .candidate(&Candidate::of::<Coulomb>().with(Terms::default().with_cubic_spring()));
     assert!(matches!(refused, Err(IdentifyError::Contradiction { .. })), "{refused:?}");
     assert_eq!(
         Candidate::named("coulomb+cubic_spring+quintic spring").unwrap().name(),
@@ -112,7 +117,7 @@ fn a_filter_is_no_spring() {
     let record = record(&values, 1e-3, 1, Quantity::Velocity, "m/s");
     let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let decays = [decay];
-    let searched = search(&machine(), &decays, &Search::default()).unwrap();
+    let searched = search(&machine(), &decays).unwrap();
     let all = searched.identifications();
     assert!(all.iter().all(|found| !found.law().contains("spring")), "{}", searched.preferred());
     let candidates = ["coulomb_viscous", "coulomb_viscous+cubic spring+quintic spring"].map(Candidate::named);
@@ -136,7 +141,7 @@ fn the_search_finds_a_stop() {
     let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
     let warns = |warnings: &[Warning]| warnings.iter().any(|w| matches!(w, Warning::PeriodDependsOnAmplitude { .. }));
     assert!(warns(&decay.warnings()));
-    let found = search(&Machine::per_unit_mass(), &[decay], &Search::default()).unwrap();
+    let found = search(&Machine::per_unit_mass(), &[decay]).unwrap();
     assert_eq!(found.preferred().law(), "coulomb_viscous + stop", "{found}");
     assert!(!warns(found.preferred().warnings()) && !warns(found.warnings()), "{found}");
 }

@@ -2,10 +2,11 @@
 
 use fmm_friction::Coulomb;
 use fmm_identify::{
-    Contribution, Experiment, Finding, Identification, Known, Machine, Preparation, Source, Terms, compare, identify,
-    identify_with,
+    Candidate, Experiment, Finding, Identification, Inquiry, Known, Machine, Preparation, Source, Terms, compare,
+    identify,
 };
 use fmm_record::{Quantity, Record};
+use fmm_uq::{Budget, Contribution};
 
 use crate::records::{LOAD, RELEASES, machine, noisy, velocity};
 
@@ -16,24 +17,29 @@ fn motion() -> Vec<f64> {
     velocity::<Coulomb>(machine(), &[0.2], RELEASES[1], SAMPLES)
 }
 
-fn part(finding: &Finding, source: Source) -> Contribution {
+/// u by this source alone, and its degrees of freedom.
+fn part(finding: &Finding, source: Source) -> (f64, f64) {
     let name = finding.parameter().name();
-    finding.contributions().find(|part| part.source == source).unwrap_or_else(|| panic!("{name}: no {source}"))
+    let budget = finding.budget().unwrap();
+    let found = budget.contributions().find(|part| part.input.name() == source.to_string());
+    let part = found.unwrap_or_else(|| panic!("{name}: no {source}"));
+    (part.uncertainty, part.input.degrees_of_freedom())
 }
 
 /// The parts make the whole: u² = Σ uᵢ², the shares 1, and ν that of Welch and Satterthwaite, G.4.1.
 fn adds_up(found: &Identification) {
     for finding in found.findings() {
         let name = finding.parameter().name();
-        let parts: Vec<Contribution> = finding.contributions().collect();
+        let budget = finding.budget();
+        let parts: Vec<Contribution<'_>> = budget.iter().flat_map(Budget::contributions).collect();
         let Some(u) = finding.uncertainty() else {
             assert!(parts.is_empty(), "{name}");
             continue;
         };
-        let sum = |of: &dyn Fn(&Contribution) -> f64| parts.iter().map(of).sum::<f64>();
+        let sum = |of: &dyn Fn(&Contribution<'_>) -> f64| parts.iter().map(of).sum::<f64>();
         assert!((sum(&|part| part.uncertainty.powi(2)) / (u * u) - 1.0).abs() < 1e-12, "{name}: {parts:?}");
         assert!((sum(&|part| part.share) - 1.0).abs() < 1e-12, "{name}: {parts:?}");
-        let freedom = u.powi(4) / sum(&|part| part.uncertainty.powi(4) / part.degrees_of_freedom);
+        let freedom = u.powi(4) / sum(&|part| part.uncertainty.powi(4) / part.input.degrees_of_freedom());
         assert!((finding.degrees_of_freedom() / freedom - 1.0).abs() < 1e-9, "{name}: {freedom}");
     }
 }
@@ -50,20 +56,20 @@ fn a_coefficient_by_mass_load_and_gain() {
     let found = identify::<Coulomb>(&machine, &[decay]).unwrap();
     adds_up(&found);
     let [mu, per_mass] = ["mu", "friction_per_mass"].map(|name| found.finding(name).unwrap());
-    let noise = part(per_mass, Source::Residuals);
+    let (noise, _) = part(per_mass, Source::Residuals);
     let expected = [
-        (Source::Residuals, noise.uncertainty / per_mass.value()),
+        (Source::Residuals, noise / per_mass.value()),
         (Source::Mass, 0.003),
         (Source::NormalLoad, 0.002),
         (Source::Gain, 0.001),
     ];
-    assert_eq!(mu.contributions().count(), expected.len());
+    assert_eq!(mu.budget().unwrap().inputs().as_slice().len(), expected.len());
     for (source, relative) in expected {
-        let part = part(mu, source);
-        assert!((part.uncertainty / mu.value() / relative - 1.0).abs() < 1e-9, "{source}: {part:?}");
+        let (u, _) = part(mu, source);
+        assert!((u / mu.value() / relative - 1.0).abs() < 1e-9, "{source}: {u}");
     }
-    assert_eq!(part(mu, Source::Residuals).degrees_of_freedom, found.fit().degrees_of_freedom() as f64);
-    assert_eq!(part(mu, Source::NormalLoad).degrees_of_freedom, f64::INFINITY);
+    assert_eq!(part(mu, Source::Residuals).1, found.fit().degrees_of_freedom() as f64);
+    assert_eq!(part(mu, Source::NormalLoad).1, f64::INFINITY);
 }
 
 /// F = k f/ω²: of a known stiffness the noise comes in by the frequency as well.
@@ -74,12 +80,12 @@ fn a_force_by_stiffness() {
     adds_up(&found);
     let [force, mass] = ["friction_force", "mass"].map(|name| found.finding(name).unwrap());
     for finding in [force, mass] {
-        let by_stiffness = part(finding, Source::Stiffness).uncertainty / finding.value();
+        let by_stiffness = part(finding, Source::Stiffness).0 / finding.value();
         assert!((by_stiffness - 2.0 / 1982.0).abs() < 1e-9, "{by_stiffness}");
     }
     // m = k/(2π f₀)².
     let frequency = found.finding("natural_frequency_hz").unwrap();
-    let by_noise = part(mass, Source::Residuals).uncertainty / mass.value();
+    let by_noise = part(mass, Source::Residuals).0 / mass.value();
     let expected = 2.0 * frequency.uncertainty().unwrap() / frequency.value();
     assert!((by_noise / expected - 1.0).abs() < 1e-9, "{by_noise} instead of {expected}");
 }
@@ -101,12 +107,13 @@ fn friction_beside_a_known_damping() {
         found.finding("friction_force").unwrap().value()
     };
     let free = Terms::default().with_linear_damping().with_damping_of_any_sign();
-    let both = identify_with::<Coulomb>(&machine(0.0, 0.0), &free, &decays).unwrap();
+    let both =
+        Inquiry::of(&machine(0.0, 0.0), &decays).candidate(&Candidate::of::<Coulomb>().with(free.clone())).unwrap();
     let of_record = MASS * both.finding("damping_per_mass").unwrap().uncertainty().unwrap();
-    let part = part(found.finding("friction_force").unwrap(), Source::Damping);
+    let (u, _) = part(found.finding("friction_force").unwrap(), Source::Damping);
     let held = 0.5 * (force(0.05) - force(0.15));
     let expected = held * of_record * of_record / (of_record * of_record + U * U);
-    assert!((part.uncertainty / expected - 1.0).abs() < 0.05, "{part:?} instead of {expected}");
+    assert!((u / expected - 1.0).abs() < 0.05, "{u} instead of {expected}");
 }
 
 /// What a law that is not excluded would change is a part of its own, and the parts still make the whole.
@@ -118,6 +125,6 @@ fn laws_that_are_left_are_a_part() {
     let preferred = comparison.preferred();
     adds_up(preferred);
     let friction = preferred.finding("friction_per_mass").unwrap();
-    let (others, noise) = (part(friction, Source::OtherLaws), part(friction, Source::Residuals));
-    assert!(others.uncertainty > 0.0 && noise.uncertainty < friction.uncertainty().unwrap());
+    let ((others, _), (noise, _)) = (part(friction, Source::OtherLaws), part(friction, Source::Residuals));
+    assert!(others > 0.0 && noise < friction.uncertainty().unwrap());
 }

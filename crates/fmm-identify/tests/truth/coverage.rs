@@ -44,7 +44,7 @@ fn decays(motions: &[Vec<f64>], seed: u64) -> Vec<Experiment> {
 
 /// The fit of law `F` from the true `start`: that it is found from elsewhere is not the question here.
 fn fitted<F: LawFamily>(decays: &[Experiment], terms: &Terms, shared: &[f64], releases: &[f64]) -> Fit {
-    let problem = Problem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
+    let problem = Problem::of(&Candidate::of::<F>().with(terms.clone()), Machine::per_unit_mass(), decays).unwrap();
     let own = releases.iter().flat_map(|release| [*release, 0.0, 0.0]);
     let mut known = shared.iter().copied().chain(own);
     // In a few records noise looks like hum, which has parameters of its own.

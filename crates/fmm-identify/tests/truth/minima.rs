@@ -3,7 +3,7 @@
 
 use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::{BoucWen, BoucWenByLevel, LawFamily, MakkarDixon};
-use fmm_identify::{Experiment, Identification, Machine, Problem, Terms, identify_with};
+use fmm_identify::{Candidate, Experiment, Identification, Inquiry, Machine, Problem, Terms};
 
 use crate::records::{NOISE, RELEASES, expected, machine, noisy, velocity};
 
@@ -19,12 +19,12 @@ fn held() -> Terms {
 }
 
 fn identified(decays: &[Experiment]) -> Identification {
-    identify_with::<BoucWen>(&Machine::per_unit_mass(), &held(), decays).unwrap()
+    Inquiry::of(&Machine::per_unit_mass(), decays).candidate(&Candidate::of::<BoucWen>().with(held())).unwrap()
 }
 
 /// A fit from the truth, a law of these `values`, ends no lower than `found`.
 fn ends_as_from<F: LawFamily>(values: &[f64], terms: &Terms, decays: &[Experiment], found: &Identification) {
-    let problem = Problem::with_terms::<F>(Machine::per_unit_mass(), terms.clone(), decays).unwrap();
+    let problem = Problem::of(&Candidate::of::<F>().with(terms.clone()), Machine::per_unit_mass(), decays).unwrap();
     let mut start = found.fit().values().to_vec();
     start[1..=values.len()].copy_from_slice(&expected::<F>(values));
     let from_truth = solve(&problem, &start, &Options::default().with_max_iterations(1000)).unwrap();
@@ -52,7 +52,9 @@ fn a_law_of_two_rises_is_found_as_from_the_truth() {
     let law = [0.06, 300.0, 20.0, 0.15, 80.0, 0.01];
     for seed in [2, 4] {
         let decays = [noisy(&velocity::<MakkarDixon>(machine(), &law, RELEASES[2], SAMPLES), seed)];
-        let found = identify_with::<MakkarDixon>(&Machine::per_unit_mass(), &Terms::default(), &decays).unwrap();
+        let found = Inquiry::of(&Machine::per_unit_mass(), &decays)
+            .candidate(&Candidate::of::<MakkarDixon>().with(Terms::default()))
+            .unwrap();
         ends_as_from::<MakkarDixon>(&law, &Terms::default(), &decays, &found);
     }
 }
@@ -63,7 +65,9 @@ fn a_loop_is_found_with_gamma_held() {
     let law = BoucWenByLevel::at(&[2000.0, 1.0, 0.15, 1.0, 1.65]).unwrap().values();
     let decays = [noisy(&velocity::<BoucWen>(machine(), &law, RELEASES[2], SAMPLES), 1)];
     let terms = held().holding("gamma", 0.0).unwrap();
-    let found = identify_with::<BoucWen>(&Machine::per_unit_mass(), &terms, &decays).unwrap();
+    let found = Inquiry::of(&Machine::per_unit_mass(), &decays)
+        .candidate(&Candidate::of::<BoucWen>().with(terms.clone()))
+        .unwrap();
     assert_eq!(found.fit().estimate("gamma").unwrap().value(), 0.0);
     // Of 2000 residuals the root mean square scatters by 1.6 %.
     assert!((found.rms_residual() / NOISE - 1.0).abs() < 0.05, "{found}");
@@ -82,7 +86,11 @@ fn threads_change_no_bit() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let terms = Terms::default().holding("exponent", 2.0).unwrap();
-        let found = pool.install(|| identify_with::<LuGre>(&Machine::per_unit_mass(), &terms, &decays).unwrap());
+        let found = pool.install(|| {
+            Inquiry::of(&Machine::per_unit_mass(), &decays)
+                .candidate(&Candidate::of::<LuGre>().with(terms.clone()))
+                .unwrap()
+        });
         let values = found.fit().values().iter().chain(found.fit().residuals());
         values.map(|value| value.to_bits()).collect::<Vec<_>>()
     };

@@ -2,7 +2,7 @@
 
 use fmm_fit::ProfileEnd;
 use fmm_friction::{Berger, Coulomb, CoulombViscous};
-use fmm_identify::{Experiment, Identification, Machine, Profile, Profiles, Terms, identify, identify_with};
+use fmm_identify::{Candidate, Experiment, Identification, Inquiry, Machine, Profile, Profiles, Terms, identify};
 use fmm_model::coverage_factor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -60,7 +60,9 @@ fn what_is_well_determined_is_straight() {
     }
     ends_are_those_of_held_fits(&found, &profiles, |name, value| {
         let terms = Terms::default().holding(name, value).unwrap();
-        identify_with::<CoulombViscous>(&Machine::per_unit_mass(), &terms, &decays).unwrap()
+        Inquiry::of(&Machine::per_unit_mass(), &decays)
+            .candidate(&Candidate::of::<CoulombViscous>().with(terms.clone()))
+            .unwrap()
     });
     let other = found.profiles(&[noisy(&motion[..1000], 1)], LEVEL).unwrap_err();
     assert!(other.to_string().contains("1500 residuals"), "{other}");

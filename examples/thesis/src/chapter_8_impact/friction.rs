@@ -2,7 +2,7 @@
 
 use fmm_frf::{friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
 use fmm_friction::Coulomb;
-use fmm_identify::{Experiment, Identification, ImpactTrial, Known, Machine, Terms, identify, identify_with};
+use fmm_identify::{Candidate, Experiment, Identification, ImpactTrial, Inquiry, Known, Machine, Terms, identify};
 use fmm_uq::Observations;
 
 use super::blows::{Blow, INTERVAL, NOISE, Spectra, Test, peak_receptance};
@@ -79,7 +79,8 @@ pub(super) fn add(
     let trials: Vec<ImpactTrial> = tests.iter().flat_map(|test| test.trials.iter().cloned()).collect();
     let free = known_machine_without_damping()?;
     let damped = Terms::default().with_linear_damping();
-    let joint = identify_with::<Coulomb>(&free, &damped, &mobilities(&trials)?)?;
+    let joint =
+        Inquiry::of(&free, &mobilities(&trials)?).candidate(&Candidate::of::<Coulomb>().with(damped.clone()))?;
     joint_fit(chapter, &joint, trials.len(), &mut rows)?;
     chapter.table(
         "μ of the simulated blows, truth 0.113 at 6.67 N: fits of the complex mobility, and closed forms of the highest line",

@@ -1,13 +1,53 @@
 //! One number of a report: a quantity with its uncertainty and where it comes from.
 
-mod contribution;
-
 use std::fmt;
 
 use fmm_fit::EstimateStatus;
 use fmm_model::{Parameter, Rounded, coverage_factor};
+use fmm_uq::{Budget, Input, Inputs};
 
-pub use contribution::{Contribution, Source};
+/// Source of a part of an uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Source {
+    /// Residuals of the fit: noise, and misfits of the law.
+    Residuals,
+    /// The mass that was given.
+    Mass,
+    /// The stiffness that was given.
+    Stiffness,
+    /// The machine's own damping that was given.
+    Damping,
+    /// The normal load that was given.
+    NormalLoad,
+    /// The gain of the instrument that recorded the motion.
+    Gain,
+    /// The gain of the instrument that measured the force.
+    ForceGain,
+    /// The time at which a pulse acts.
+    Timing,
+    /// The steadiness of the friction that was declared.
+    Steadiness,
+    /// Laws that the records do not exclude, and that would give another value.
+    OtherLaws,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Residuals => "residuals of the fit",
+            Self::Mass => "mass",
+            Self::Stiffness => "stiffness",
+            Self::Damping => "damping of the machine",
+            Self::NormalLoad => "normal load",
+            Self::Gain => "gain of the record",
+            Self::ForceGain => "gain of the force",
+            Self::Timing => "time of the pulse",
+            Self::Steadiness => "steadiness of the friction",
+            Self::OtherLaws => "laws that are not excluded",
+        })
+    }
+}
 
 /// Origin of the value of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,12 +139,12 @@ impl Finding {
         random.map_or(f64::INFINITY, |(_, random)| self.of_residuals * (all / random).powi(2))
     }
 
-    /// The budget of the uncertainty: what each source contributes to it, without those that contribute nothing. Empty
-    /// if there is no uncertainty.
+    /// The budget of the uncertainty, with the sources that contribute something as its inputs; `None` if there is no
+    /// uncertainty. The sources are independent of each other: first order for what was given, JCGM 100:2008, 5.1.2.
     ///
     /// ```
     /// use fmm_friction::Coulomb;
-    /// use fmm_identify::{Experiment, Known, Machine, Preparation, Source, identify};
+    /// use fmm_identify::{Experiment, Known, Machine, Preparation, identify};
     /// # use fmm_model::Oscillator;
     /// # use fmm_record::{Quantity, Record};
     /// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -116,23 +156,24 @@ impl Finding {
     /// // A record without noise: μ = F/N is as uncertain as mass (0.05 %) and load (0.1 %) are.
     /// let machine = Machine::of_mass(Known::new(10.391, 0.0052)?)?.with_normal_load(Known::new(14.0, 0.014)?)?;
     /// let found = identify::<Coulomb>(&machine, &[Experiment::ring_down(&record, &Preparation::default())?])?;
-    /// let load = found.finding("mu").unwrap().contributions().find(|part| part.source == Source::NormalLoad).unwrap();
+    /// let budget = found.finding("mu").unwrap().budget().unwrap();
+    /// let load = budget.contributions().find(|part| part.input.name() == "normal load").unwrap();
     /// assert!((load.uncertainty - 0.25 * 0.014 / 14.0).abs() < 1e-9);
     /// // (0.1 %)²/((0.1 %)² + (0.05 %)²)
     /// assert!((load.share - 0.8).abs() < 1e-3);
+    /// println!("{budget}");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn contributions(&self) -> impl Iterator<Item = Contribution> + '_ {
-        let all = self.variance().unwrap_or(0.0);
-        self.parts.iter().flatten().filter(|(_, variance)| *variance > 0.0).map(move |&(source, variance)| {
-            let is_estimated = source == Source::Residuals;
-            Contribution {
-                source,
-                uncertainty: variance.sqrt(),
-                share: variance / all,
-                degrees_of_freedom: if is_estimated { self.of_residuals } else { f64::INFINITY },
-            }
-        })
+    pub fn budget(&self) -> Option<Budget> {
+        let (name, unit) = (self.parameter.name(), self.parameter.unit());
+        let input = |&(source, variance): &(Source, f64)| {
+            let input = Input::new(source.to_string(), 0.0, variance.sqrt(), unit)?;
+            if source == Source::Residuals { input.with_degrees_of_freedom(self.of_residuals) } else { Ok(input) }
+        };
+        let parts = self.parts.iter().flatten().filter(|(_, variance)| *variance > 0.0);
+        let inputs = Inputs::new(parts.map(input).collect::<Result<Vec<_>, _>>().ok()?).ok()?;
+        let sensitivities = vec![1.0; inputs.as_slice().len()];
+        Some(Budget::new(inputs, self.value, sensitivities).ok()?.named(name, unit))
     }
 
     /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by
