@@ -21,7 +21,7 @@ use crate::friction_curve::rules::DRAWS;
 use crate::identification::Identification;
 use crate::law::naming::Units;
 use crate::machine::{Machine, Scale, Terms};
-use crate::problem::friction_curve::friction;
+use crate::problem::followed::friction;
 use crate::quantities::table::{Table, mass_of_stiffness};
 
 /// Friction over the speed as ring-downs show it, without a law: the whole resistance to the motion, of the contact and

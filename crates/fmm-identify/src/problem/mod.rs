@@ -20,8 +20,8 @@ use crate::quantities::prior::Prior;
 use crate::quantities::table::{Place, Table};
 
 mod declared;
+pub(crate) mod followed;
 pub(crate) mod force;
-pub(crate) mod friction_curve;
 mod motion;
 mod parts;
 mod residuals;

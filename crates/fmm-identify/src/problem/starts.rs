@@ -13,7 +13,7 @@ use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::terms::Term;
-use crate::problem::friction_curve::FrictionCurve;
+use crate::problem::followed::FrictionCurve;
 use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 
 /// Start value of the excess of a static level, as a share of the sliding one (1).
