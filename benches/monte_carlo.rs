@@ -10,7 +10,8 @@ mod ratio;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
-use fmm_uq::{Distribution, Input, Inputs, Interval, MonteCarlo};
+use fmm_model::Interval;
+use fmm_uq::{Distribution, Input, Inputs, MonteCarlo};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal, StudentT};

@@ -1,6 +1,6 @@
 //! Propagation, Monte Carlo and shares of the variance: inputs and trials.
 
-use fmm_uq::{Gum, Input, Inputs, MonteCarlo, Taylor, propagate, variance_shares};
+use fmm_uq::{Gum, Input, Inputs, MonteCarlo, Taylor, VarianceShare, propagate};
 
 use crate::least::Unit::{Microsecond, Millisecond, Nanosecond};
 use crate::least::{least, print_row};
@@ -43,9 +43,9 @@ pub(crate) fn print_rows() {
         let inputs = normal(count);
         least(|| Gum::new(&inputs).first_order_only().propagate(squares).is_ok())
     });
-    print_row("an evaluation of `variance_shares`, inputs", Nanosecond, &[2, 4, 8], |count| {
+    print_row("an evaluation of `VarianceShare`, inputs", Nanosecond, &[2, 4, 8], |count| {
         let inputs = normal(count);
-        let time = least(|| variance_shares(&inputs, 100_000, 0, 0.0, |x: &[f64]| x.iter().sum::<f64>()).is_ok());
+        let time = least(|| VarianceShare::of_all(&inputs, 100_000, 0, 0.0, |x: &[f64]| x.iter().sum::<f64>()).is_ok());
         time / (1e5 * (count + 2) as f64)
     });
 }

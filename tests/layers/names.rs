@@ -16,7 +16,6 @@ const UNUSED: &[&str] = &[
     "fmm_uq::FailureKind",
     "fmm_uq::Failures",
     "fmm_uq::Histogram",
-    "fmm_uq::Influence",
     "fmm_uq::Region",
     "fmm_uq::SecondOrder",
     "fmm_uq::VarianceShare",

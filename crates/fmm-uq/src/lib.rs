@@ -36,7 +36,7 @@
 //! | uncertainty of the result of any other model? | [`MonteCarlo`]: an [`OutputSample`] | models of a second a trial, unless many machines share the run |
 //! | how many trials? | [`Adaptive`], until the digits are stable | a cost that must be known in advance |
 //! | is the interval of the GUM valid? | [`validate`], with [`Adaptive::for_validation`] | |
-//! | which input matters? | [`Budget::contributions`]; with interactions [`variance_shares`] (Sobol') | [`variance_shares`]: correlated inputs |
+//! | which input matters? | [`Budget::contributions`]; with interactions [`VarianceShare`] (Sobol') | [`VarianceShare`]: correlated inputs |
 //! | a trial takes a second? | many machines and [`PartialRun`]s | |
 //! | the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`] | |
@@ -45,7 +45,7 @@
 //! | several results together? | [`Propagation`] with its regions, [`OutputSample::ellipsoid`], [`OutputSample::rectangle`] | |
 //!
 //! Write a model once, generic in its number: `f64` for trials, [`Taylor`] for exact derivatives. A closure has one
-//! number type: write it over [`Taylor`], and give trials [`at_values`] of it.
+//! number type: write it over [`Taylor`], and give trials [its values](Taylor::at_values).
 //!
 //! # Units and conventions
 //!
@@ -69,7 +69,7 @@
 //! | [`propagate`] | n²/2 + 2n evaluations of [`Taylor`] numbers, n/2 for the first order alone | 4.5 µs for four inputs |
 //! | [`MonteCarlo`] | M evaluations and n M draws; 8 bytes a value | 29 ns a trial of four normal inputs |
 //! | intervals | M values partly sorted | 2 ns a trial; the shortest 4 to 8 ns |
-//! | [`variance_shares`] | M (n + 2) evaluations | 21 ns each |
+//! | [`VarianceShare`] | M (n + 2) evaluations | 21 ns each |
 //!
 //! # Features
 //!
@@ -103,20 +103,19 @@ mod validation;
 pub use distributions::Distribution;
 pub use error::UncertaintyError;
 pub use failure::{Failure, FailureKind, Failures};
-pub use fmm_model::{Interval, Scalar, coverage_factor};
-pub use groups::{AnalysisOfVariance, Consensus, Influence, Outlier, Precision, RandomEffects};
+pub use fmm_model::Scalar;
+pub use groups::{AnalysisOfVariance, Consensus, Outlier, Precision, RandomEffects};
 pub use gum::{Budget, Contribution, Expanded, Gum, Linearisation, Propagation, SecondOrder, Statement, propagate};
 pub use inputs::{Evaluation, Input, Inputs, Observations};
 #[cfg(feature = "formula")]
 pub use model::Formula;
-pub use model::{ModelOutput, Taylor, at_values};
+pub use model::{ModelOutput, Taylor};
 pub use moments::Moments;
 pub use monte_carlo::{
     Adaptive, Histogram, IntervalKind, MonteCarlo, OutputSample, PartialRun, Progress, TrialStatement, VarianceShare,
-    variance_shares,
 };
 pub use region::Region;
-pub use validation::{Validation, numerical_tolerance, validate};
+pub use validation::{Validation, validate};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

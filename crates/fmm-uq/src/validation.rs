@@ -4,34 +4,6 @@ use fmm_model::Interval;
 
 use crate::error::UncertaintyError;
 
-/// δ, half a unit of the last digit of an uncertainty stated to `digits` significant digits (JCGM 101:2008, 7.9.2).
-///
-/// ```text
-/// u ≈ c · 10^ℓ with c of n digits,   δ = ½ · 10^ℓ
-/// ```
-///
-/// ```
-/// assert_eq!(fmm_uq::numerical_tolerance(0.000_35, 2)?, 5e-6);
-/// assert_eq!(fmm_uq::numerical_tolerance(9.96, 2)?, 0.5);
-/// # Ok::<(), fmm_uq::UncertaintyError>(())
-/// ```
-///
-/// # Errors
-/// [`UncertaintyError::Invalid`] unless there are 1 to 15 digits and the uncertainty is positive and finite.
-pub fn numerical_tolerance(standard_uncertainty: f64, digits: u32) -> Result<f64, UncertaintyError> {
-    let digits = valid_digits(digits)?;
-    if !(standard_uncertainty > 0.0 && standard_uncertainty.is_finite()) {
-        let (option, must_be) = ("uncertainty to take a tolerance from", "positive and finite");
-        return Err(UncertaintyError::out_of_range(option, standard_uncertainty, must_be));
-    }
-    // The exponent is that of the rounded number: 9.96 to two digits is 10, not 9.9.
-    let decimals = digits as usize - 1;
-    let rounded = format!("{standard_uncertainty:.decimals$e}");
-    let exponent = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
-    let text = format!("5e{}", exponent - digits.cast_signed());
-    Ok(text.parse().unwrap_or(f64::MIN_POSITIVE))
-}
-
 pub(crate) fn valid_digits(digits: u32) -> Result<u32, UncertaintyError> {
     if (1..=15).contains(&digits) {
         Ok(digits)
@@ -58,6 +30,34 @@ pub struct Validation {
 }
 
 impl Validation {
+    /// δ, half a unit of the last digit of an uncertainty stated to `digits` significant digits (JCGM 101:2008, 7.9.2).
+    ///
+    /// ```text
+    /// u ≈ c · 10^ℓ with c of n digits,   δ = ½ · 10^ℓ
+    /// ```
+    ///
+    /// ```
+    /// assert_eq!(fmm_uq::Validation::tolerance_of(0.000_35, 2)?, 5e-6);
+    /// assert_eq!(fmm_uq::Validation::tolerance_of(9.96, 2)?, 0.5);
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`UncertaintyError::Invalid`] unless there are 1 to 15 digits and the uncertainty is positive and finite.
+    pub fn tolerance_of(standard_uncertainty: f64, digits: u32) -> Result<f64, UncertaintyError> {
+        let digits = valid_digits(digits)?;
+        if !(standard_uncertainty > 0.0 && standard_uncertainty.is_finite()) {
+            let (option, must_be) = ("uncertainty to take a tolerance from", "positive and finite");
+            return Err(UncertaintyError::out_of_range(option, standard_uncertainty, must_be));
+        }
+        // The exponent is that of the rounded number: 9.96 to two digits is 10, not 9.9.
+        let decimals = digits as usize - 1;
+        let rounded = format!("{standard_uncertainty:.decimals$e}");
+        let exponent = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
+        let text = format!("5e{}", exponent - digits.cast_signed());
+        Ok(text.parse().unwrap_or(f64::MIN_POSITIVE))
+    }
+
     /// True if the interval of the GUM may be used.
     pub fn is_valid(&self) -> bool {
         self.low <= self.tolerance && self.high <= self.tolerance
@@ -90,7 +90,7 @@ impl Validation {
 /// ```
 ///
 /// # Errors
-/// Those of [`numerical_tolerance`]; [`UncertaintyError::Invalid`] if the intervals differ in coverage
+/// Those of [`Validation::tolerance_of`]; [`UncertaintyError::Invalid`] if the intervals differ in coverage
 /// probability.
 pub fn validate(
     gum: Interval,
@@ -102,7 +102,7 @@ pub fn validate(
         let (option, must_be) = ("coverage probability of the second interval", "that of the first");
         return Err(UncertaintyError::out_of_range(option, monte_carlo.level, must_be));
     }
-    let tolerance = numerical_tolerance(standard_uncertainty, digits)?;
+    let tolerance = Validation::tolerance_of(standard_uncertainty, digits)?;
     Ok(Validation { tolerance, low: (gum.low - monte_carlo.low).abs(), high: (gum.high - monte_carlo.high).abs() })
 }
 
@@ -116,9 +116,9 @@ mod tests {
         for (u, digits, delta) in
             [(0.000_35, 2, 5e-6), (2.0, 2, 0.05), (10.1, 2, 0.5), (0.0754, 1, 0.005), (36.0, 2, 0.5), (50e-6, 1, 5e-6)]
         {
-            assert_eq!(numerical_tolerance(u, digits).unwrap(), delta, "{u} to {digits} digits");
+            assert_eq!(Validation::tolerance_of(u, digits).unwrap(), delta, "{u} to {digits} digits");
         }
-        assert!(numerical_tolerance(1.0, 0).is_err() && numerical_tolerance(1.0, 16).is_err());
-        assert!(numerical_tolerance(0.0, 2).is_err() && numerical_tolerance(f64::NAN, 2).is_err());
+        assert!(Validation::tolerance_of(1.0, 0).is_err() && Validation::tolerance_of(1.0, 16).is_err());
+        assert!(Validation::tolerance_of(0.0, 2).is_err() && Validation::tolerance_of(f64::NAN, 2).is_err());
     }
 }

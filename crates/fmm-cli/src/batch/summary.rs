@@ -1,7 +1,7 @@
 //! Summary of a campaign: what its records say together.
 
-use fmm_model::Estimated;
-use fmm_uq::{Interval, Outlier, Precision, RandomEffects};
+use fmm_model::{Estimated, Interval};
+use fmm_uq::{Outlier, Precision, RandomEffects};
 use serde::Serialize;
 
 use super::campaign::Campaign;
@@ -133,8 +133,9 @@ impl Quantity {
         let other = parted.consensus(RandomEffects::DerSimonianLaird).ok()?;
         let Interval { low, high, .. } = consensus.interval(LEVEL).ok()?;
         let Estimated { value: mean, uncertainty: u } = consensus.mean();
-        let moved = consensus.influences().into_iter().zip(&told).filter_map(|(influence, (row, _))| {
-            Some((row.file.display().to_string(), (influence.without?.value - mean) / u))
+        let moved = told.iter().enumerate().filter_map(|(index, (row, _))| {
+            let others = consensus.without(index).ok()?.mean().value;
+            Some((row.file.display().to_string(), (others - mean) / u))
         });
         let plain = consensus.without_effects();
         Some(Self {

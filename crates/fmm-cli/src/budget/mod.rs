@@ -10,10 +10,9 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use fmm_model::Rounded;
+use fmm_model::{Interval, Rounded};
 use fmm_uq::{
-    Budget, Expanded, Gum, Interval, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement,
-    UncertaintyError, validate,
+    Budget, Expanded, Gum, IntervalKind, MonteCarlo, Propagation, Statement, TrialStatement, UncertaintyError, validate,
 };
 use serde::Serialize;
 

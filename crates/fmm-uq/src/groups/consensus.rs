@@ -16,27 +16,6 @@ pub enum RandomEffects {
     DerSimonianLaird,
 }
 
-/// Influence of a result on the consensus.
-///
-/// ```
-/// use fmm_model::Estimated;
-/// use fmm_uq::{Consensus, RandomEffects};
-///
-/// let runs = [(10.1, 0.1), (10.2, 0.1), (10.0, 0.2), (12.0, 0.1)].map(|(mu, u)| Estimated::new(mu, u));
-/// let influences = Consensus::of(&runs, RandomEffects::MandelPaule)?.influences();
-/// // Where results differ by more than their uncertainties, all weigh nearly the same.
-/// assert!(influences.iter().all(|influence| (influence.weight - 0.25).abs() < 0.01));
-/// assert!(influences[3].without.is_some_and(|others| others.value < 10.2));
-/// # Ok::<(), fmm_uq::UncertaintyError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Influence {
-    /// Its share of the weights (1).
-    pub weight: f64,
-    /// The consensus of the others; `None` if there is only one other.
-    pub without: Option<Estimated>,
-}
-
 /// Consensus of results x with standard uncertainties u, each of which may have an effect of its own.
 ///
 /// ```text
@@ -291,13 +270,20 @@ impl Consensus {
         Self::of(&others, self.effects)?.with_shared(&shared)
     }
 
-    /// Influence of each result on the consensus, in their order; [`Consensus::without`] has the intervals.
-    pub fn influences(&self) -> Vec<Influence> {
-        let influence = |(index, weight): (usize, f64)| {
-            let without = self.without(index).ok().map(|consensus| consensus.mean());
-            Influence { weight, without }
-        };
-        self.shares(self.variance).into_iter().enumerate().map(influence).collect()
+    /// Share of the weights that each result has (1), in their order.
+    ///
+    /// ```
+    /// use fmm_model::Estimated;
+    /// use fmm_uq::{Consensus, RandomEffects};
+    ///
+    /// let runs = [(10.1, 0.1), (10.2, 0.1), (10.0, 0.2), (12.0, 0.1)].map(|(mu, u)| Estimated::new(mu, u));
+    /// let weights = Consensus::of(&runs, RandomEffects::MandelPaule)?.weights();
+    /// // Where results differ by more than their uncertainties, all weigh nearly the same.
+    /// assert!(weights.iter().all(|weight| (weight - 0.25).abs() < 0.01));
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    pub fn weights(&self) -> Vec<f64> {
+        self.shares(self.variance)
     }
 }
 

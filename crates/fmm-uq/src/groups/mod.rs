@@ -5,5 +5,5 @@ mod consensus;
 mod precision;
 
 pub use analysis_of_variance::AnalysisOfVariance;
-pub use consensus::{Consensus, Influence, RandomEffects};
+pub use consensus::{Consensus, RandomEffects};
 pub use precision::{Outlier, Precision};

@@ -7,5 +7,5 @@ mod taylor;
 
 #[cfg(feature = "formula")]
 pub use formula::Formula;
-pub use output::{ModelOutput, at_values};
+pub use output::ModelOutput;
 pub use taylor::Taylor;

@@ -5,7 +5,7 @@ use crate::moments::Moments;
 use crate::monte_carlo::block::BLOCK_TRIALS;
 use crate::monte_carlo::output_sample::symmetric;
 use crate::monte_carlo::settling::Settling;
-use crate::validation::{numerical_tolerance, valid_digits};
+use crate::validation::{Validation, valid_digits};
 
 /// Sequences of trials before the first decision: with fewer, chance may make them agree.
 const FEWEST_SEQUENCES: usize = 10;
@@ -120,7 +120,7 @@ impl Adaptive {
     /// Tolerance of all figures of an output with this uncertainty (unit of the output).
     pub(crate) fn tolerance(&self, standard_uncertainty: f64) -> Result<f64, UncertaintyError> {
         let tolerance = match self.target {
-            Target::Digits(digits) => numerical_tolerance(standard_uncertainty, digits)?,
+            Target::Digits(digits) => Validation::tolerance_of(standard_uncertainty, digits)?,
             Target::Tolerance(tolerance) => tolerance,
         };
         Ok(self.share * tolerance)

@@ -17,7 +17,7 @@ mod statement;
 pub use adaptive::{Adaptive, IntervalKind};
 pub use output_sample::{Histogram, OutputSample};
 pub use partial_run::PartialRun;
-pub use sensitivity::{VarianceShare, variance_shares};
+pub use sensitivity::VarianceShare;
 pub use statement::TrialStatement;
 
 use std::ops::{ControlFlow, Range};

@@ -35,87 +35,90 @@ pub struct VarianceShare {
     pub total_error: f64,
 }
 
-/// The Sobol' indices of all inputs, from `trials` (n + 2) evaluations for n inputs.
-///
-/// ```text
-/// S = Σ f(B) (f(A_B) − f(A))/(N V),   S_T = Σ (f(A) − f(A_B))²/(2 N V)
-/// ```
-///
-/// A and B are independent sets of trials, A_B is A with one column of B. Trials come in blocks as in a [`MonteCarlo`](crate::MonteCarlo)
-/// and give the same bits for any number of threads. Where the model fails for any of the n + 2 points of a row,
-/// the row is left out for all; `allowed_failures` is the share of rows for which that may happen.
-///
-/// # Errors
-/// [`UncertaintyError::NoAnswer`] if inputs are correlated, an input has Student's t of ν ≤ 2, the output does not
-/// vary, or the squares of the values vanish. [`UncertaintyError::Invalid`] for fewer than 10 blocks of 1000 trials,
-/// from which the errors come, for more than 2⁴⁰ trials, for a share outside [0, 1), or if the squares of the values
-/// overflow. [`UncertaintyError::Model`] if more rows fail than allowed, or all.
-///
-/// # Panics
-/// If the model does.
-///
-/// # References
-/// A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, "Variance based sensitivity analysis of
-/// model output", Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018, Table 2 (b) and (f).
-pub fn variance_shares<R: ModelOutput<f64>>(
-    inputs: &Inputs,
-    trials: u64,
-    seed: u64,
-    allowed_failures: f64,
-    model: impl Fn(&[f64]) -> R + Sync,
-) -> Result<Vec<VarianceShare>, UncertaintyError> {
-    let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
-    if let Some((first, second)) = inputs.dependent_pair() {
-        let what = format!("variance shares need independent inputs, but `{first}` and `{second}` are not");
-        return Err(UncertaintyError::no_answer(what));
-    }
-    HeavyTail::require_variance(HeavyTail::of(inputs).as_ref())?;
-    let blocks = trials.div_ceil(BLOCK_TRIALS as u64);
-    if blocks < 10 {
-        return refuse("number of trials for variance shares", trials as f64, "at least 10000");
-    }
-    let allowed_failures = AllowedFailures::new(allowed_failures)?;
-    let most = 1 << 40;
-    let count = usize::try_from(blocks).ok().filter(|_| trials <= most);
-    let count = count.ok_or_else(|| UncertaintyError::too_many_trials(trials, most))?;
-    let sampler = Sampler::new(inputs);
-    let one = |block: usize| Rows::run(seed, block as u64, &sampler, &model);
-    #[cfg(feature = "rayon")]
-    let rows: Vec<Rows> = (0..count).into_par_iter().map(one).collect();
-    #[cfg(not(feature = "rayon"))]
-    let rows: Vec<Rows> = (0..count).map(one).collect();
-    let (failed, all) = (rows.iter().map(|r| r.failed).sum::<u64>(), blocks * BLOCK_TRIALS as u64);
-    if !allowed_failures.allow(failed, all) {
-        let share = allowed_failures.share();
-        let what = format!("the model failed in {failed} of {all} rows, more than the allowed share of {share}");
-        return Err(UncertaintyError::model(what));
-    }
-    let base: Vec<f64> = rows.iter().flat_map(|r| r.a.iter().chain(&r.b)).copied().collect();
-    if base.is_empty() {
-        return Err(UncertaintyError::no_success());
-    }
-    let moments = Moments::of_values(&base);
-    moments.require_squares(&base, "the output")?;
-    let overflow = || UncertaintyError::uncertainty_out_of_range("the output", f64::INFINITY, "(its unit)");
-    let moments = moments.if_finite().ok_or_else(overflow)?;
-    if moments.sum_of_squares() == 0.0 {
-        let what = "the output does not vary, so that there is no variance to share among the inputs";
-        return Err(UncertaintyError::no_answer(what));
-    }
-    let variance = moments.sum_of_squares() / base.len() as f64;
-    let names = inputs.as_slice().iter().enumerate();
-    let share = |(i, input): (usize, &Input)| {
-        let of = |figure: fn(&Rows, usize, f64) -> Option<f64>| {
-            let figures: Vec<f64> = rows.iter().filter_map(|r| figure(r, i, moments.mean())).collect();
-            let over = Moments::of_values(&figures);
-            let error = over.standard_deviation().unwrap_or(0.0) / (figures.len() as f64).sqrt();
-            (over.mean() / variance, error / variance)
+impl VarianceShare {
+    /// The Sobol' indices of all inputs, from `trials` (n + 2) evaluations for n inputs.
+    ///
+    /// ```text
+    /// S = Σ f(B) (f(A_B) − f(A))/(N V),   S_T = Σ (f(A) − f(A_B))²/(2 N V)
+    /// ```
+    ///
+    /// A and B are independent sets of trials, A_B is A with one column of B. Trials come in blocks as in a
+    /// [`MonteCarlo`](crate::MonteCarlo) and give the same bits for any number of threads. Where the model fails for
+    /// any of the n + 2 points of a row, the row is left out for all; `allowed_failures` is the share of rows for which
+    /// that may happen.
+    ///
+    /// # Errors
+    /// [`UncertaintyError::NoAnswer`] if inputs are correlated, an input has Student's t of ν ≤ 2, the output does not
+    /// vary, or the squares of the values vanish. [`UncertaintyError::Invalid`] for fewer than 10 blocks of 1000
+    /// trials, from which the errors come, for more than 2⁴⁰ trials, for a share outside [0, 1), or if the squares of
+    /// the values overflow. [`UncertaintyError::Model`] if more rows fail than allowed, or all.
+    ///
+    /// # Panics
+    /// If the model does.
+    ///
+    /// # References
+    /// A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, "Variance based sensitivity analysis
+    /// of model output", Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018, Table 2 (b) and (f).
+    pub fn of_all<R: ModelOutput<f64>>(
+        inputs: &Inputs,
+        trials: u64,
+        seed: u64,
+        allowed_failures: f64,
+        model: impl Fn(&[f64]) -> R + Sync,
+    ) -> Result<Vec<Self>, UncertaintyError> {
+        let refuse = |option, value, must_be| Err(UncertaintyError::out_of_range(option, value, must_be));
+        if let Some((first, second)) = inputs.dependent_pair() {
+            let what = format!("variance shares need independent inputs, but `{first}` and `{second}` are not");
+            return Err(UncertaintyError::no_answer(what));
+        }
+        HeavyTail::require_variance(HeavyTail::of(inputs).as_ref())?;
+        let blocks = trials.div_ceil(BLOCK_TRIALS as u64);
+        if blocks < 10 {
+            return refuse("number of trials for variance shares", trials as f64, "at least 10000");
+        }
+        let allowed_failures = AllowedFailures::new(allowed_failures)?;
+        let most = 1 << 40;
+        let count = usize::try_from(blocks).ok().filter(|_| trials <= most);
+        let count = count.ok_or_else(|| UncertaintyError::too_many_trials(trials, most))?;
+        let sampler = Sampler::new(inputs);
+        let one = |block: usize| Rows::run(seed, block as u64, &sampler, &model);
+        #[cfg(feature = "rayon")]
+        let rows: Vec<Rows> = (0..count).into_par_iter().map(one).collect();
+        #[cfg(not(feature = "rayon"))]
+        let rows: Vec<Rows> = (0..count).map(one).collect();
+        let (failed, all) = (rows.iter().map(|r| r.failed).sum::<u64>(), blocks * BLOCK_TRIALS as u64);
+        if !allowed_failures.allow(failed, all) {
+            let share = allowed_failures.share();
+            let what = format!("the model failed in {failed} of {all} rows, more than the allowed share of {share}");
+            return Err(UncertaintyError::model(what));
+        }
+        let base: Vec<f64> = rows.iter().flat_map(|r| r.a.iter().chain(&r.b)).copied().collect();
+        if base.is_empty() {
+            return Err(UncertaintyError::no_success());
+        }
+        let moments = Moments::of_values(&base);
+        moments.require_squares(&base, "the output")?;
+        let overflow = || UncertaintyError::uncertainty_out_of_range("the output", f64::INFINITY, "(its unit)");
+        let moments = moments.if_finite().ok_or_else(overflow)?;
+        if moments.sum_of_squares() == 0.0 {
+            let what = "the output does not vary, so that there is no variance to share among the inputs";
+            return Err(UncertaintyError::no_answer(what));
+        }
+        let variance = moments.sum_of_squares() / base.len() as f64;
+        let names = inputs.as_slice().iter().enumerate();
+        let share = |(i, input): (usize, &Input)| {
+            let of = |figure: fn(&Rows, usize, f64) -> Option<f64>| {
+                let figures: Vec<f64> = rows.iter().filter_map(|r| figure(r, i, moments.mean())).collect();
+                let over = Moments::of_values(&figures);
+                let error = over.standard_deviation().unwrap_or(0.0) / (figures.len() as f64).sqrt();
+                (over.mean() / variance, error / variance)
+            };
+            let (first_order, first_order_error) = of(Rows::first_order);
+            let (total, total_error) = of(Rows::total);
+            Self { input: input.name().to_owned(), first_order, first_order_error, total, total_error }
         };
-        let (first_order, first_order_error) = of(Rows::first_order);
-        let (total, total_error) = of(Rows::total);
-        VarianceShare { input: input.name().to_owned(), first_order, first_order_error, total, total_error }
-    };
-    Ok(names.map(share).collect())
+        Ok(names.map(share).collect())
+    }
 }
 
 /// The results of one block of rows of which every point succeeded.

@@ -1,8 +1,8 @@
 //! The worked examples of JCGM 100:2008, Annex H. Figures with more digits than the printed ones were recomputed
 //! from the same inputs in an independent program.
 
-use fmm_uq::{Budget, Gum, Input, Inputs, Linearisation, Observations, Propagation, Scalar, Taylor};
-use fmm_uq::{coverage_factor, propagate};
+use fmm_model::coverage_factor;
+use fmm_uq::{Budget, Gum, Input, Inputs, Linearisation, Observations, Propagation, Scalar, Taylor, propagate};
 
 /// Independent figures carry 12 digits; both sides round a dozen times.
 const RELATIVE: f64 = 1e-11;

@@ -1,6 +1,7 @@
 //! Moments, quantiles and samples of all distributions against 40-digit figures.
 
-use fmm_uq::{Distribution, Input, Inputs, MonteCarlo, coverage_factor};
+use fmm_model::coverage_factor;
+use fmm_uq::{Distribution, Input, Inputs, MonteCarlo};
 use serde_json::Value;
 
 fn oracle() -> Value {

@@ -2,9 +2,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use fmm_model::coverage_factor;
 use fmm_uq::{
     Adaptive, Distribution, Gum, Input, Inputs, IntervalKind, Linearisation, MonteCarlo, Observations, Scalar,
-    UncertaintyError, coverage_factor, propagate, variance_shares,
+    UncertaintyError, VarianceShare, propagate,
 };
 
 fn normal(value: f64, u: f64) -> Inputs {
@@ -62,7 +63,7 @@ fn a_variance_that_is_infinite_is_not_stated() {
 
         let adaptive = MonteCarlo::adaptive(&inputs, Adaptive::to_tolerance(0.1).unwrap()).run(|x| x[0]);
         assert!(matches!(adaptive, Err(UncertaintyError::NoAnswer { .. })), "{adaptive:?}");
-        let shares = variance_shares(&inputs, 10_000, 0, 0.0, |x: &[f64]| x[0] + x[1]);
+        let shares = VarianceShare::of_all(&inputs, 10_000, 0, 0.0, |x: &[f64]| x[0] + x[1]);
         assert!(matches!(shares, Err(UncertaintyError::NoAnswer { .. })), "{shares:?}");
     }
     let three = Input::mean_of("few", &Observations::new(&[1.0, 2.0, 3.0, 3.5]).unwrap(), "m").unwrap();
@@ -154,7 +155,7 @@ fn uncertainties_too_small_to_square_are_refused() {
             .standard_uncertainty(0)
             .unwrap_err(),
     );
-    tiny(variance_shares(&normal(1.0, 0.1), 10_000, 0, 0.0, |x: &[f64]| x[0] * 1e-200).unwrap_err());
+    tiny(VarianceShare::of_all(&normal(1.0, 0.1), 10_000, 0, 0.0, |x: &[f64]| x[0] * 1e-200).unwrap_err());
     // Equal values have no spread at all, however small they are; a sum keeps its largest part.
     assert_eq!(Observations::new(&[1e-200; 3]).unwrap().standard_uncertainty(), 0.0);
     let both = Inputs::new([Input::new("a", 1.0, 1e-200, "m").unwrap(), Input::new("b", 1.0, 0.1, "m").unwrap()]);
@@ -169,9 +170,9 @@ fn uncertainties_too_small_to_square_are_refused() {
 
 #[test]
 fn a_constant_output_has_no_shares() {
-    let error = variance_shares(&normal(1.0, 0.1), 10_000, 0, 0.0, |_: &[f64]| 3.0).unwrap_err();
+    let error = VarianceShare::of_all(&normal(1.0, 0.1), 10_000, 0, 0.0, |_: &[f64]| 3.0).unwrap_err();
     assert!(error.to_string().contains("does not vary"), "{error}");
-    let error = variance_shares(&normal(1.0, 0.1), 10_000, 0, 0.5, |_: &[f64]| f64::NAN).unwrap_err();
+    let error = VarianceShare::of_all(&normal(1.0, 0.1), 10_000, 0, 0.5, |_: &[f64]| f64::NAN).unwrap_err();
     assert!(error.to_string().contains("the model failed in"), "{error}");
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_uq::{Distribution, Input, Inputs, UncertaintyError, VarianceShare, variance_shares};
+use fmm_uq::{Distribution, Input, Inputs, UncertaintyError, VarianceShare};
 
 fn rectangular(count: usize, low: f64, high: f64) -> Inputs {
     let input = |k| Input::of(format!("x{k}"), Distribution::rectangular(low, high).unwrap(), "1").unwrap();
@@ -27,7 +27,7 @@ fn ishigami() {
     let v0 = 0.5 * (1.0 + b * PI.powi(4) / 5.0f64).powi(2);
     let (v1, v02) = (a * a / 8.0, b * b * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0));
     let v = v0 + v1 + v02;
-    let shares = variance_shares(&inputs, 100_000, 1, 0.0, model).unwrap();
+    let shares = VarianceShare::of_all(&inputs, 100_000, 1, 0.0, model).unwrap();
     check(&shares, &[v0 / v, v1 / v, 0.0], &[(v0 + v02) / v, v1 / v, v02 / v]);
 }
 
@@ -41,7 +41,7 @@ fn product_function() {
     let all: f64 = own.iter().map(|v| 1.0 + v).product();
     let first = own.map(|v| v / (all - 1.0));
     let total = own.map(|v| v / (1.0 + v) * all / (all - 1.0));
-    check(&variance_shares(&inputs, 100_000, 2, 0.0, model).unwrap(), &first, &total);
+    check(&VarianceShare::of_all(&inputs, 100_000, 2, 0.0, model).unwrap(), &first, &total);
 }
 
 #[test]
@@ -49,17 +49,17 @@ fn rows_that_fail_are_left_out_as_a_whole() {
     let inputs = rectangular(2, 0.0, 1.0);
     // x₀ and x₁ each cut at 0.9 leave x₀ + 2 x₁ with the shares 1/5 and 4/5.
     let model = |x: &[f64]| if x[0] < 0.9 && x[1] < 0.9 { Ok(x[0] + 2.0 * x[1]) } else { Err("beyond") };
-    let shares = variance_shares(&inputs, 50_000, 3, 0.5, model).unwrap();
+    let shares = VarianceShare::of_all(&inputs, 50_000, 3, 0.5, model).unwrap();
     check(&shares, &[0.2, 0.8], &[0.2, 0.8]);
-    let refused = variance_shares(&inputs, 50_000, 3, 0.1, model);
+    let refused = VarianceShare::of_all(&inputs, 50_000, 3, 0.1, model);
     assert!(
         matches!(refused, Err(UncertaintyError::Model { ref what, .. }) if what.contains("of 50000 rows")),
         "{refused:?}"
     );
-    assert!(variance_shares(&inputs, 9000, 3, 0.0, |x: &[f64]| x[0]).is_err());
-    assert!(variance_shares(&inputs, 50_000, 3, f64::NAN, |x: &[f64]| x[0]).is_err());
-    assert!(variance_shares(&inputs, 50_000, 3, 0.0, |_: &[f64]| 1.0).is_err());
+    assert!(VarianceShare::of_all(&inputs, 9000, 3, 0.0, |x: &[f64]| x[0]).is_err());
+    assert!(VarianceShare::of_all(&inputs, 50_000, 3, f64::NAN, |x: &[f64]| x[0]).is_err());
+    assert!(VarianceShare::of_all(&inputs, 50_000, 3, 0.0, |_: &[f64]| 1.0).is_err());
     let correlated = inputs.with_correlations(&[("x0", "x1", 0.1)]).unwrap();
-    let refused = variance_shares(&correlated, 50_000, 3, 0.0, |x: &[f64]| x[0]);
+    let refused = VarianceShare::of_all(&correlated, 50_000, 3, 0.0, |x: &[f64]| x[0]);
     assert!(matches!(refused, Err(UncertaintyError::NoAnswer { what }) if what.contains("independent inputs")));
 }

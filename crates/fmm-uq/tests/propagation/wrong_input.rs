@@ -1,8 +1,8 @@
 //! Everything that a caller can get wrong is refused with an error of its own kind.
 
 use fmm_uq::{
-    Adaptive, Distribution, FailureKind, Input, Inputs, IntervalKind, MonteCarlo, UncertaintyError, propagate,
-    variance_shares,
+    Adaptive, Distribution, FailureKind, Input, Inputs, IntervalKind, MonteCarlo, UncertaintyError, VarianceShare,
+    propagate,
 };
 
 fn one() -> Inputs {
@@ -64,7 +64,7 @@ fn models_that_give_no_number() {
     let trials = MonteCarlo::new(&one(), 10).unwrap().run(|_| f64::NAN).unwrap_err();
     let UncertaintyError::TooManyFailures { first, .. } = &trials else { panic!("{trials}") };
     assert_eq!(first.kind, FailureKind::NotFinite { output: 0 });
-    let error = variance_shares(&one(), 10_000, 0, 0.0, |_: &[f64]| f64::NAN).unwrap_err();
+    let error = VarianceShare::of_all(&one(), 10_000, 0, 0.0, |_: &[f64]| f64::NAN).unwrap_err();
     assert!(error.to_string().contains("failed in 10000 of"), "{error}");
     let run = MonteCarlo::adaptive(&one(), Adaptive::to_digits(2).unwrap());
     let error = run.run(|_| f64::INFINITY).unwrap_err();
