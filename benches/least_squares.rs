@@ -12,7 +12,7 @@ use std::hint::black_box;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group};
-use fmm_fit::{Derivatives, EvaluationError, Minimizer, MultiStart, Options, Outcome, Refit, Residuals, solve};
+use fmm_fit::{Derivatives, EvaluationError, Minimizer, Options, Outcome, Refit, Residuals, solve};
 use fmm_friction::{Berger, Coulomb, LawFamily};
 use fmm_identify::Problem;
 use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
@@ -221,11 +221,6 @@ fn thesis_fit(criterion: &mut Criterion) {
     let outcome = minimizer.minimize(&euler, &START).expect("valid");
     print_error("Euler fit of the same motion", minimizer.values(), outcome);
     group.bench_function("euler", |bencher| bencher.iter(|| minimizer.minimize(&euler, black_box(&START))));
-    let search = MultiStart::default().with_starts(1).with_kicks(2, 16).with_reach(vec![1e-3, 1e-3]);
-    let minima = search.solve(&euler, &START).expect("valid");
-    if let Some(best) = minima.best() {
-        print_error(&format!("  the best of {} Euler fits", minima.starts()), best.values(), best.outcome());
-    }
 
     let own = Repeated::new(Thesis::A3, false, &Thesis::A3);
     let outcome = minimizer.minimize(&own, &START).expect("valid");

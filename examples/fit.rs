@@ -17,8 +17,8 @@ use argmin::core::{Executor, KV, State};
 use clap::{Parser, ValueEnum};
 use fmm_cli::figure::{self, Panel, Role};
 use fmm_fit::{
-    Automatic, BoundedLevenbergMarquardt, EvaluationError, Fit, Joint, Loss, Model, Options, Residuals, Scale,
-    solve_observed, solve_robust,
+    Automatic, BoundedLevenbergMarquardt, EvaluationError, Fit, Joint, Loss, Model, Options, Residuals, solve_observed,
+    solve_robust,
 };
 use fmm_model::{Bounds, Parameter, Rounded, Scalar};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -258,7 +258,7 @@ fn robust(line: &Line) -> Result<Shown, Box<dyn Error>> {
     }
     let (problem, start) = (Automatic::<_, 3>::new(decay), [1.0, 0.1, 0.0]);
     let squares = line.follow("least squares", &problem, &start)?;
-    let robust = solve_robust(&problem, &start, Loss::Tukey, Scale::Estimated, &Options::default())?;
+    let robust = solve_robust(&problem, &start, Loss::Tukey, None, &Options::default())?;
     let mut text = String::from("A decay with five outliers\n");
     writeln!(text, "  {:<10} {:>6} {:>20} {:>20}", "", "truth", "least squares", "Tukey's biweight")?;
     for (j, estimate) in squares.estimates().iter().enumerate() {
@@ -301,9 +301,9 @@ fn joint(line: &Line) -> Result<Shown, Box<dyn Error>> {
     let fit = line.follow("together", &joint, &joint.start(&[start; 3])?)?;
     write!(text, "Together\n{fit}")?;
     let mut panels = Vec::new();
-    for (number, (problem, part)) in joint.problems().iter().zip(joint.split(&fit)?).enumerate() {
+    for (number, (problem, values)) in joint.problems().iter().zip(joint.split(&fit)?).enumerate() {
         let x_label = if number == 2 { "time / s" } else { "" };
-        panels.push(problem.model().panel(x_label, "y / V", "joint fit", part.values()));
+        panels.push(problem.model().panel(x_label, "y / V", "joint fit", &values));
     }
     Ok(Shown { name: "joint", text, document: document(&fit), panels })
 }

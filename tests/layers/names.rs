@@ -18,7 +18,6 @@ const UNUSED: &[&str] = &[
     "fmm_uq::Histogram",
     "fmm_uq::Region",
     "fmm_uq::SecondOrder",
-    "fmm_uq::VarianceShare",
 ];
 
 /// Folders of those who use the crates beside other crates.

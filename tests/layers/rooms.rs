@@ -13,7 +13,7 @@ const ROOMS: &[(&str, &str)] = &[
     ),
     (
         "fmm-fit",
-        "error algebra problem solver result diagnostics fitting uncertainty robust starts regression comparison \
+        "error algebra problem solver result diagnostics fitting uncertainty robust regression comparison \
          design posterior",
     ),
     ("fmm-frf", "error baseline channel impulse least_squares response average friction decay modal"),

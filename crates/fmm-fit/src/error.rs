@@ -120,12 +120,4 @@ impl FitError {
     pub(crate) fn no_minimum(what: impl Into<String>) -> Self {
         Self::NoMinimum { what: what.into() }
     }
-
-    /// A fit and a problem of other sizes, each residuals and parameters.
-    pub(crate) fn other_fit(fit: (usize, usize), problem: (usize, usize)) -> Self {
-        let what = format!(
-            "the fit has {fit:?} residuals and parameters, but the problem {problem:?}; it must be that of the problem"
-        );
-        Self::OtherFit { what }
-    }
 }

@@ -57,7 +57,7 @@
 //!
 //! | question | item |
 //! |---|---|
-//! | fit a curve, or residuals that a closure gives | [`curve_fit`], [`fit`]; with options or weights [`curve`], [`ClosureProblem`] |
+//! | fit a curve, or residuals of a closure | [`curve_fit`]; with options or weights [`curve`], [`ClosureProblem`] |
 //! | fit once | [`solve`]; with progress and cancellation [`solve_observed`] |
 //! | fit a hundred thousand times | [`Refit`] where only fixed values change; else [`Minimizer`], which keeps its buffers |
 //! | fit under argmin's executor | [`BoundedLevenbergMarquardt`] |
@@ -66,18 +66,17 @@
 //! | give each residual its uncertainty | [`Weighted`] |
 //! | fix parameters, or add what is known of them | [`WithFixed`], [`WithPriors`] |
 //! | let outliers count less | [`solve_robust`], as a problem of its own [`Robust`] |
-//! | find the lowest of many minima | [`MultiStart`]; from starts of one's own, the worse given up early, [`solve_best`] |
+//! | find the lowest of many minima | [`MultiStart`] |
 //! | fit several records that share parameters | [`Joint`], [`Block`] |
 //! | which parameters are determined? | [`Fit::null_directions`], [`Estimate::status`] |
 //! | how well? | [`Fit::covariance`], [`Fit::interval`] |
-//! | how well, where the model bends? | [`profile_interval`] |
+//! | how well, where the model bends? | [`ProfileInterval`] |
 //! | what is probable, where values end at bounds or priors count? | `Sampler`, `Posterior` (feature `sampler`) |
 //! | is the posterior by a model of my own right? | `Calibration` (feature `sampler`) |
-//! | how well, where residuals are correlated? | [`CorrelatedCovariance`] |
 //! | what do fixed values do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
-//! | are the residuals independent? | [`autocorrelation`], [`effective_count`] |
-//! | is a further parameter worth having? | [`f_test`], [`Fit::corrected_akaike`] |
+//! | are the residuals independent, and how many count? | [`autocorrelation`], [`effective_count`] |
+//! | is a further parameter worth having? | [`FTest`], [`Fit::corrected_akaike`] |
 //! | which measurements next? | [`Information`], [`DesignSearch`] |
 //! | which straight line, polynomial, columns? | [`StraightLine`], [`Polynomial`], [`LinearRegression`]: no start values |
 //! | a line with uncertainties in both variables? | [`YorkLine`] |
@@ -87,7 +86,7 @@
 //! # Start values, losses, bounds
 //!
 //! * **Start values** must lie within the bounds and have finite residuals. Where the sum of squares has several
-//!   minima, give [`MultiStart`] bounds or a [reach](MultiStart::with_reach) that mean something.
+//!   minima, give [`MultiStart`] bounds that mean something, or starts of your own.
 //! * **Loss**: squares unless there are outliers. [`Loss::SoftL1`] and [`Loss::Huber`] keep problems with one minimum
 //!   as they are; [`Loss::Cauchy`], [`Loss::Arctan`] and [`Loss::Tukey`] forget outliers and make further minima. A
 //!   model that misses something has no outliers: find what it misses.
@@ -110,8 +109,8 @@
 //! * A trial point without finite residuals is no error: the search goes less far, and [`Fit::non_finite`] says what it
 //!   was.
 //! * What is not determined has no uncertainty, but a direction in words.
-//! * The same problem, start and options give the same bits, a time limit aside, a [`MultiStart`] and [`solve_best`] on
-//!   any number of threads as well.
+//! * The same problem, start and options give the same bits, a time limit aside, a [`MultiStart`] on any number
+//!   of threads as well.
 //!
 //! # Cost
 //!
@@ -124,7 +123,7 @@
 //!
 //! All are off by default.
 //!
-//! * `rayon`: [`MultiStart`] and [`solve_best`] on all threads of the current pool, with the same result.
+//! * `rayon`: [`MultiStart`] on all threads of the current pool, with the same result.
 //! * `sampler`: the posterior of the parameters by the no-U-turn sampler of the crate nuts-rs, which brings faer along.
 //!
 //! # Neighbours
@@ -147,24 +146,22 @@ mod regression;
 mod result;
 mod robust;
 mod solver;
-mod starts;
 mod uncertainty;
 
-pub use comparison::{FTest, f_tail, f_test};
+pub use comparison::FTest;
 pub use design::design_case::{DesignCase, DesignCriterion};
 pub use design::information::Information;
 pub use design::search::{ChosenDesign, DesignSearch};
 pub use diagnostics::{autocorrelation, autocorrelation_time, effective_count};
 pub use error::FitError;
 pub use fitting::argmin::BoundedLevenbergMarquardt;
-pub use fitting::curve::{ClosureProblem, curve, curve_fit, fit};
-pub use fitting::joint::{Joint, JointPart};
+pub use fitting::curve::{ClosureProblem, curve, curve_fit};
+pub use fitting::joint::Joint;
+pub use fitting::multi_start::MultiStart;
 pub use fitting::solve::{Progress, solve, solve_observed};
-pub use fmm_model::{Bounds, Dual, ModelError, Parameter, Scalar};
+pub use fmm_model::{Bounds, Dual, Parameter, Scalar};
 #[cfg(feature = "sampler")]
 pub use posterior::calibration::Calibration;
-#[cfg(feature = "sampler")]
-pub use posterior::check::{Disagreement, GradientFreeCheck};
 #[cfg(feature = "sampler")]
 pub use posterior::marginal::Marginal;
 #[cfg(feature = "sampler")]
@@ -191,19 +188,14 @@ pub use result::null_direction::NullDirection;
 pub use result::prediction::Prediction;
 pub use robust::loss::Loss;
 pub use robust::problem::Robust;
-pub use robust::robust_fit::{RobustFit, Scale, median_deviation, solve_robust};
+pub use robust::robust_fit::{RobustFit, median_deviation, solve_robust};
 pub use solver::jacobian_check::{JacobianMismatch, check_jacobian};
 pub use solver::minimizer::Minimizer;
 pub use solver::options::Options;
 pub use solver::outcome::{NonFinite, Outcome};
-pub use starts::halving::solve_best;
-pub use starts::minima::{Minima, Minimum};
-pub use starts::multi_start::MultiStart;
-pub use uncertainty::correlated::CorrelatedCovariance;
-pub use uncertainty::profile::profile_interval;
 pub use uncertainty::profile_interval::{ProfileEnd, ProfileInterval, ResidualVariance};
 pub use uncertainty::refit::Refit;
-pub use uncertainty::sensitivity::{PropagatedCovariance, Sensitivity};
+pub use uncertainty::sensitivity::Sensitivity;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

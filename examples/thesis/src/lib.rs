@@ -12,6 +12,7 @@ pub mod chapter_6_energy;
 pub mod chapter_7_friction;
 pub mod chapter_8_impact;
 pub mod chapter_9_future;
+mod kicks;
 pub mod printed;
 mod program;
 pub mod report;

@@ -48,18 +48,6 @@ pub(crate) fn solve(factored: &[f64], right: &mut [f64]) {
     }
 }
 
-/// The inverse of the factor in the lower half of `factored`, by rows, with zeros above the diagonal.
-pub(crate) fn lower_inverse(factored: &[f64], order: usize) -> Vec<f64> {
-    let mut inverse = vec![0.0; order * order];
-    for column in 0..order {
-        for row in column..order {
-            let known: f64 = (column..row).map(|k| factored[row * order + k] * inverse[k * order + column]).sum();
-            inverse[row * order + column] = (f64::from(row == column) - known) / factored[row * (order + 1)];
-        }
-    }
-    inverse
-}
-
 /// The inverse; `None` unless the matrix is positive definite by more than rounding.
 pub(crate) fn inverse(matrix: &[f64], order: usize) -> Option<Vec<f64>> {
     let mut factored = matrix.to_vec();

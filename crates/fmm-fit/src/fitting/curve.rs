@@ -10,9 +10,9 @@ use crate::solver::options::Options;
 
 /// Residuals that a closure gives in numbers that carry the derivatives by all `N` parameters along.
 ///
-/// [`fit`] and [`curve_fit`] make one and solve it; by itself it takes options, weights, losses and a place in a joint
-/// problem. A closure that fails says so by a residual that is not finite; a type that implements
-/// [`Model`](crate::Model) can say why.
+/// [`curve`] makes one of a curve and its data. It takes options, weights, losses and a place in a joint problem. A
+/// closure that fails says so by a residual that is not finite; a type that implements [`Model`](crate::Model) can say
+/// why.
 ///
 /// ```
 /// use fmm_fit::{ClosureProblem, Dual, Loss, Options, Robust, solve};
@@ -131,36 +131,6 @@ pub fn curve_fit<X: Copy, const N: usize>(
     solve(&curve(x, y, start.map(|(parameter, _)| parameter), model)?, &values, &Options::default())
 }
 
-/// Fits `count` residuals that a closure fills, with exact derivatives, from a start value for each parameter.
-///
-/// ```
-/// use fmm_fit::{Bounds, Parameter, fit};
-///
-/// // Rosenbrock's valley, with a bound across it.
-/// let x = Parameter::new("x", "x", "1").bounded(Bounds::UNBOUNDED.at_most(0.5));
-/// let y = Parameter::from("y");
-/// let fit = fit([(x, -1.2), (y, 1.0)], 2, |[x, y], residuals| {
-///     residuals[0] = 10.0 * (y - x * x);
-///     residuals[1] = 1.0 - x;
-/// })?;
-/// assert!(fit.outcome().is_success());
-/// assert_eq!(fit.values()[0], 0.5);
-/// assert!((fit.values()[1] - 0.25).abs() < 1e-12);
-/// # Ok::<(), fmm_fit::FitError>(())
-/// ```
-///
-/// # Errors
-/// Those of [`solve`].
-pub fn fit<const N: usize>(
-    start: [(impl Into<Parameter>, f64); N],
-    count: usize,
-    residuals: impl Fn([Dual<N>; N], &mut [Dual<N>]),
-) -> Result<Fit, FitError> {
-    let values = start.each_ref().map(|(_, value)| *value);
-    let problem = ClosureProblem::new(start.map(|(parameter, _)| parameter), count, residuals);
-    solve(&problem, &values, &Options::default())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -201,12 +171,12 @@ mod tests {
         let model = Decay(start.map(|(name, _)| Parameter::from(name)));
         let expected = solve(&Automatic::<_, 3>::new(model), &[1.0, 1.0, 0.1], &Options::default()).unwrap();
         let by_curve = curve_fit(&t, &y, start, decay::<Dual<3>>).unwrap();
-        let by_residuals = fit(start, 40, |p, residuals| {
+        let problem = ClosureProblem::new(["a", "b", "c"], 40, |p, residuals: &mut [Dual<3>]| {
             for ((r, t), y) in residuals.iter_mut().zip(&t).zip(&y) {
                 *r = decay(*t, p) - *y;
             }
-        })
-        .unwrap();
+        });
+        let by_residuals = solve(&problem, &[1.0, 1.0, 0.1], &Options::default()).unwrap();
         for found in [by_curve, by_residuals] {
             assert!(found.outcome().is_success() && found.has_exact_jacobian());
             assert_eq!(found.values(), expected.values());
@@ -224,8 +194,11 @@ mod tests {
         let plane = curve_fit(&x, &[3.0, 2.0, 5.0, 7.0], [("a", 0.0), ("b", 0.0)], |x, [a, b]| a * x[0] + b * x[1]);
         let plane = plane.unwrap();
         assert!((plane.values()[0] - 2.0).abs() < 1e-12 && (plane.values()[1] - 3.0).abs() < 1e-12);
-        assert!(matches!(fit([("a", 1.0)], 0, |_, _| {}), Err(FitError::Undetermined { .. })));
-        let fixed = Parameter::from("a").bounded(fmm_model::Bounds::new(1.0, 1.0).unwrap());
-        assert!(fit([(fixed, 1.0)], 0, |_, _| {}).is_ok());
+        let fit = |parameter: Parameter| {
+            let empty = ClosureProblem::new([parameter], 0, |_: [Dual<1>; 1], _: &mut [Dual<1>]| {});
+            solve(&empty, &[1.0], &Options::default())
+        };
+        assert!(matches!(fit(Parameter::from("a")), Err(FitError::Undetermined { .. })));
+        assert!(fit(Parameter::from("a").bounded(fmm_model::Bounds::new(1.0, 1.0).unwrap())).is_ok());
     }
 }

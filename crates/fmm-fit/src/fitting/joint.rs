@@ -27,7 +27,7 @@ use crate::result::fit::Fit;
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Joint, JointPart, Options, Residuals, solve};
+/// use fmm_fit::{Joint, Options, Residuals, solve};
 /// use fmm_model::Parameter;
 ///
 /// /// One heating curve, T = T₀ + b t.
@@ -55,9 +55,9 @@ use crate::result::fit::Fit;
 ///
 /// let fit = solve(&joint, &joint.start(&[[20.0, 1.0], [30.0, 1.0]])?, &Options::default())?;
 /// assert!((fit.estimate("rate").unwrap().value() - 1.95).abs() < 1e-9);
-/// let second: &JointPart<'_> = &joint.split(&fit)?[1];
-/// assert!((second.values()[0] - fit.estimate("start[2]").unwrap().value()).abs() < 1e-12);
-/// assert_eq!(second.residuals().len(), 3);
+/// let second = &joint.split(&fit)?[1];
+/// assert_eq!(second[0], fit.estimate("start[2]").unwrap().value());
+/// assert_eq!(joint.rows(1), Some(3..6));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -174,22 +174,25 @@ impl<P: Residuals> Joint<P> {
         Ok(sums.iter().zip(&self.parameters).map(mean).collect())
     }
 
-    /// The part of each problem in `fit`, which must be one of this problem.
+    /// Of each problem the values of its parameters in `fit`, which must be one of this problem, in its own order and
+    /// shared ones included.
     ///
     /// # Errors
     /// [`FitError::OtherFit`] if the numbers of parameters or residuals are not those of this problem.
-    pub fn split<'a>(&'a self, fit: &'a Fit) -> Result<Vec<JointPart<'a>>, FitError> {
-        if fit.values().len() != self.parameters.len() || fit.residuals().len() != self.len() {
-            let sizes = |residuals: usize, parameters: usize| (residuals, parameters);
-            let fit = sizes(fit.residuals().len(), fit.values().len());
-            return Err(FitError::other_fit(fit, sizes(self.len(), self.parameters.len())));
-        }
-        let part = |member: &'a Member| JointPart {
-            values: member.values(fit.values()),
-            indices: &member.indices,
-            residuals: &fit.residuals()[member.rows.clone()],
-        };
-        Ok(self.members.iter().map(part).collect())
+    pub fn split(&self, fit: &Fit) -> Result<Vec<Vec<f64>>, FitError> {
+        fit.require_of(self)?;
+        Ok(self.members.iter().map(|member| member.values(fit.values())).collect())
+    }
+
+    /// Of each parameter of a problem the index in the joint fit, for its uncertainty and correlations; `None` for a
+    /// number that is none of a problem.
+    pub fn indices(&self, problem: usize) -> Option<&[usize]> {
+        self.members.get(problem).map(|member| member.indices.as_slice())
+    }
+
+    /// Range of the residuals of a problem among all; `None` for a number that is none of a problem.
+    pub fn rows(&self, problem: usize) -> Option<Range<usize>> {
+        self.members.get(problem).map(|member| member.rows.clone())
     }
 }
 
@@ -266,37 +269,6 @@ impl<P: Residuals> Residuals for Joint<P> {
         } else {
             problem.block_residuals(index, &values, residuals)
         }
-    }
-}
-
-/// Part of one problem in a joint fit.
-#[derive(Debug, Clone)]
-pub struct JointPart<'a> {
-    values: Vec<f64>,
-    indices: &'a [usize],
-    residuals: &'a [f64],
-}
-
-impl JointPart<'_> {
-    /// The values of the problem's parameters, in its own order, shared ones included.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// For each of its parameters, the index in the joint fit, for its uncertainty and correlations.
-    pub fn indices(&self) -> &[usize] {
-        self.indices
-    }
-
-    /// The residuals of the problem.
-    pub fn residuals(&self) -> &[f64] {
-        self.residuals
-    }
-
-    /// Root mean square of these residuals.
-    pub fn rms_residual(&self) -> f64 {
-        let sum: f64 = self.residuals.iter().map(|r| r * r).sum();
-        (sum / self.residuals.len() as f64).sqrt()
     }
 }
 

@@ -3,4 +3,5 @@
 pub(crate) mod argmin;
 pub(crate) mod curve;
 pub(crate) mod joint;
+pub(crate) mod multi_start;
 pub(crate) mod solve;

@@ -100,10 +100,8 @@ fn evaluate<P: Residuals + ?Sized>(
 }
 
 pub(super) fn no_start<P: Residuals + ?Sized>(target: &Target<'_, P>) -> FitError {
-    let said = target.model_error().unwrap_or("nothing");
-    FitError::no_model(format!(
-        "no point about the fit has finite residuals and derivatives; the model said last: {said}"
-    ))
+    let last = target.non_finite().map_or_else(String::new, |reason| format!("; at the last of them {reason}"));
+    FitError::no_model(format!("no point about the fit has finite residuals and derivatives{last}"))
 }
 
 fn undetermined<P: Residuals + ?Sized>(target: &Target<'_, P>, fit: &Fit) -> FitError {

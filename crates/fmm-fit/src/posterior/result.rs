@@ -3,7 +3,7 @@
 use fmm_model::{Bounds, Parameter};
 
 use crate::error::FitError;
-use crate::posterior::check::GradientFreeCheck;
+use crate::posterior::check::disagreements;
 use crate::posterior::marginal::Marginal;
 use crate::posterior::sampler::Chain;
 use crate::posterior::warning::PosteriorWarning;
@@ -41,7 +41,8 @@ pub struct Posterior {
     divergences: usize,
     acceptance: f64,
     evaluations: usize,
-    check: Option<GradientFreeCheck>,
+    /// Moments that random walks without gradients find otherwise; `None` if no walk was asked for.
+    disagreements: Option<Vec<PosteriorWarning>>,
 }
 
 impl Posterior {
@@ -62,7 +63,7 @@ impl Posterior {
             divergences: chains.iter().map(|chain| chain.run.divergences).sum(),
             acceptance: chains.iter().map(|chain| chain.run.acceptance).sum::<f64>() / chains.len() as f64,
             evaluations: chains.iter().map(|chain| chain.run.evaluations).sum(),
-            check: None,
+            disagreements: None,
         };
         let mut quantities: Vec<(Parameter, Vec<f64>)> =
             free.iter().map(|&j| (parameters[j].clone(), posterior.draws().map(|draw| draw[j]).collect())).collect();
@@ -81,9 +82,9 @@ impl Posterior {
         Ok(posterior)
     }
 
-    pub(super) fn checked(mut self, check: GradientFreeCheck) -> Self {
-        self.check = Some(check);
-        self
+    /// Compares with random walks without gradients.
+    pub(super) fn check(&mut self, walks: &[Vec<f64>]) {
+        self.disagreements = Some(disagreements(self, walks));
     }
 
     /// All parameters of the problem, the fixed ones among them.
@@ -165,9 +166,9 @@ impl Posterior {
         self.evaluations
     }
 
-    /// Comparison with random walks without gradients; `None` if none were asked for.
-    pub fn check(&self) -> Option<&GradientFreeCheck> {
-        self.check.as_ref()
+    /// Moments that random walks without gradients find otherwise; `None` if no walk was asked for.
+    pub(super) fn disagreements(&self) -> Option<&[PosteriorWarning]> {
+        self.disagreements.as_deref()
     }
 
     /// Reasons to distrust this posterior; empty if there are none.
@@ -188,8 +189,7 @@ impl Posterior {
         if self.divergences as f64 > HARMLESS_DIVERGENCES * self.len() as f64 {
             warnings.push(PosteriorWarning::Divergences { count: self.divergences, draws: self.len() });
         }
-        let disagreements = self.check.iter().flat_map(GradientFreeCheck::disagreements);
-        warnings.extend(disagreements.cloned().map(PosteriorWarning::Disagrees));
+        warnings.extend(self.disagreements.iter().flatten().cloned());
         warnings
     }
 }

@@ -11,6 +11,7 @@ use crate::posterior::transform::{Image, Transform};
 use crate::problem::block::Structure;
 use crate::problem::residuals::Residuals;
 use crate::solver::evaluation::{Evaluator, Point};
+use crate::solver::outcome::NonFinite;
 use crate::uncertainty::profile_interval::ResidualVariance;
 
 /// The density of the parameters and of the correlation of neighbouring residuals, given the data, over coordinates
@@ -72,9 +73,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
             let (own, support) = (parameters[j].bounds(), priors[j].support());
             own.at_least(support.lower()).at_most(support.upper())
         };
-        let mut evaluator = Evaluator::default();
-        let own = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
-        evaluator.begin(problem, own, values)?;
+        let evaluator = Evaluator::of(problem, values)?;
         let parts = evaluator.free.iter().map(|&j| (Transform::of(bounds(j)), priors[j])).collect();
         let series = || {
             let mut first = 0;
@@ -115,8 +114,8 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
         self.parts.get(place).map_or(CORRELATION, |(transform, _)| *transform)
     }
 
-    pub(super) fn model_error(&self) -> Option<&str> {
-        self.evaluator.model_error.as_deref()
+    pub(super) fn non_finite(&self) -> Option<&NonFinite> {
+        self.evaluator.non_finite.as_ref()
     }
 
     pub(super) fn parameters(&self) -> &[Parameter] {

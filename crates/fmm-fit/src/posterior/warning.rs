@@ -4,8 +4,6 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::posterior::check::Disagreement;
-
 /// A reason to distrust a sampled posterior. `Display` gives it in words, with what to do.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -31,8 +29,19 @@ pub enum PosteriorWarning {
         /// Of how many draws.
         draws: usize,
     },
-    /// A random walk without gradients finds another moment.
-    Disagrees(Disagreement),
+    /// A random walk without gradients finds another moment, in the unit of the parameter.
+    Disagrees {
+        /// Name of the parameter.
+        parameter: String,
+        /// True for the standard deviation, false for the mean.
+        is_deviation: bool,
+        /// The moment by the sampler with gradients.
+        with_gradient: f64,
+        /// The moment by random-walk steps.
+        without_gradient: f64,
+        /// Standard error of the difference.
+        standard_error: f64,
+    },
 }
 
 impl fmt::Display for PosteriorWarning {
@@ -52,13 +61,7 @@ impl fmt::Display for PosteriorWarning {
                 "{count} of {draws} trajectories diverged: the density bends sharply there, and the draws may avoid that region; \
                  compare with the profile intervals"
             ),
-            Self::Disagrees(Disagreement {
-                parameter,
-                is_deviation,
-                with_gradient,
-                without_gradient,
-                standard_error,
-            }) => {
+            Self::Disagrees { parameter, is_deviation, with_gradient, without_gradient, standard_error } => {
                 let moment = if *is_deviation { "standard deviation" } else { "mean" };
                 let [with, without] =
                     [with_gradient, without_gradient].map(|value| Rounded::new(*value, Some(*standard_error)));

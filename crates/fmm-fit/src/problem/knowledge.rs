@@ -1,8 +1,7 @@
-//! Knowledge of parameters beside the data: fixed values, and values with a covariance.
+//! Knowledge of parameters beside the data: fixed values, and values with an uncertainty.
 
-use fmm_model::{Bounds, ModelError, Parameter};
+use fmm_model::{Bounds, Parameter};
 
-use crate::algebra::definite;
 use crate::error::FitError;
 use crate::problem::block::Block;
 use crate::problem::residuals::{Derivatives, EvaluationError, Residuals, forward_shape, forward_values};
@@ -40,25 +39,24 @@ pub struct WithFixed<'a, P: ?Sized> {
 }
 
 impl<'a, P: Residuals + ?Sized> WithFixed<'a, P> {
-    /// `problem` with the parameter at each index fixed at the value beside it; an index that it does not have is
-    /// ignored.
+    /// `problem` with the parameter at each index fixed at the value beside it.
     ///
     /// # Errors
-    /// [`ModelError`] for a value that is not finite.
-    pub fn new(problem: &'a P, values: impl IntoIterator<Item = (usize, f64)>) -> Result<Self, ModelError> {
+    /// [`FitError::Problem`] for an index beyond the parameters, [`FitError::OutOfRange`] for a value that is no
+    /// number.
+    pub fn new(problem: &'a P, values: impl IntoIterator<Item = (usize, f64)>) -> Result<Self, FitError> {
         let mut parameters = problem.parameters().to_vec();
         for (index, value) in values {
-            let fixed = Bounds::new(value, value)?;
-            if let Some(parameter) = parameters.get_mut(index) {
-                *parameter = parameter.clone().bounded(fixed);
-            }
+            let count = parameters.len();
+            let Some(parameter) = parameters.get_mut(index) else {
+                return Err(FitError::problem(format!(
+                    "parameter {index} is said to be fixed; the problem has {count} parameters, counted from 0"
+                )));
+            };
+            let wrong = |_| FitError::option(&format!("the fixed value of {}", parameter.name()), "a number", value);
+            *parameter = parameter.clone().bounded(Bounds::new(value, value).map_err(wrong)?);
         }
         Ok(Self { problem, parameters })
-    }
-
-    /// `problem` with other bounds.
-    pub(crate) const fn within(problem: &'a P, parameters: Vec<Parameter>) -> Self {
-        Self { problem, parameters }
     }
 }
 
@@ -74,13 +72,12 @@ impl<P: Residuals + ?Sized> Residuals for WithFixed<'_, P> {
 /// contain that knowledge.
 ///
 /// ```text
-/// r = [ r_data(θ), L⁻¹ (θ_known − m) ],     Σ = L Lᵀ
+/// r = [ r_data(θ), (θⱼ − mⱼ)/uⱼ ]     for each known parameter j
 /// ```
 ///
-/// m are the known values and Σ is their covariance. The residuals of the data have to be of standard deviation 1, as
-/// those of [`Weighted`](crate::Weighted) are, and [`Fit::unit_covariance`](crate::Fit::unit_covariance) is then the
-/// covariance of the estimates; for residuals of another deviation there is
-/// [`with_residual_deviation`](Self::with_residual_deviation).
+/// m are the known values and u their standard uncertainties. The residuals of the data have to be of standard
+/// deviation 1, as those of [`Weighted`](crate::Weighted) are, and
+/// [`Fit::unit_covariance`](crate::Fit::unit_covariance) is then the covariance of the estimates.
 ///
 /// ```
 /// use fmm_fit::{Options, Weighted, WithPriors, curve, solve};
@@ -97,10 +94,7 @@ impl<P: Residuals + ?Sized> Residuals for WithFixed<'_, P> {
 #[derive(Debug, Clone)]
 pub struct WithPriors<P> {
     problem: P,
-    places: Vec<usize>,
-    values: Vec<f64>,
-    /// L⁻¹, by rows, times the standard deviation of the residuals of the data.
-    weights: Vec<f64>,
+    known: Vec<(usize, f64, f64)>,
     blocks: Vec<Block>,
 }
 
@@ -109,74 +103,31 @@ impl<P: Residuals> WithPriors<P> {
     /// of the value, both in the unit of the parameter.
     ///
     /// # Errors
-    /// Those of [`correlated`](Self::correlated).
+    /// [`FitError::Problem`] for a parameter twice or beyond those of the problem, [`FitError::OutOfRange`] for a value
+    /// that is not finite or an uncertainty that is not positive.
     pub fn new(problem: P, known: &[(usize, f64, f64)]) -> Result<Self, FitError> {
-        let count = known.len();
-        let mut covariance = vec![0.0; count * count];
-        for (row, (_, _, uncertainty)) in known.iter().enumerate() {
-            covariance[row * (count + 1)] = uncertainty * uncertainty;
-        }
-        let places: Vec<usize> = known.iter().map(|(place, ..)| *place).collect();
-        let values: Vec<f64> = known.iter().map(|(_, value, _)| *value).collect();
-        Self::correlated(problem, &places, &values, &covariance)
-    }
-
-    /// `problem` with knowledge of the parameters of the indices `places`: their `values`, each in its unit, and the
-    /// `covariance` of these, row by row.
-    ///
-    /// # Errors
-    /// [`FitError::Count`] unless there is one value per place and a square covariance, [`FitError::Problem`] for a
-    /// place twice or beyond the parameters and for a covariance that is not symmetric and positive definite,
-    /// [`FitError::OutOfRange`] for a value that is not finite.
-    pub fn correlated(problem: P, places: &[usize], values: &[f64], covariance: &[f64]) -> Result<Self, FitError> {
-        let (count, parameters) = (places.len(), problem.parameters().len());
-        if values.len() != count || covariance.len() != count * count {
-            let (values, elements) = (values.len(), covariance.len());
-            return Err(FitError::count(format!(
-                "{count} known parameters have {values} values and a covariance of {elements} elements; give one value \
-                 for each and a square covariance"
-            )));
-        }
-        let is_wrong = |(row, place): (usize, &usize)| *place >= parameters || places[..row].contains(place);
-        if let Some(place) = places.iter().enumerate().find(|place| is_wrong(*place)).map(|(_, place)| place) {
-            return Err(FitError::problem(format!(
-                "parameter {place} is said to be known; each of the {parameters} parameters may be once"
-            )));
-        }
-        if let Some(value) = values.iter().find(|value| !value.is_finite()) {
-            return Err(FitError::option("the known value of a parameter", "finite", *value));
-        }
-        let mut factored = covariance.to_vec();
-        let is_symmetric = (0..count * count).all(|at| covariance[at] == covariance[at % count * count + at / count]);
-        // A smaller share of the diagonal is rounding of a singular covariance.
-        let least = |j: usize| 1e-12 * covariance[j * (count + 1)].abs();
-        if !(is_symmetric && definite::factor(&mut factored, count, least)) {
-            return Err(FitError::problem(
-                "the covariance of known parameters must be symmetric and positive definite; leave out what follows \
-                 from the others",
-            ));
+        let parameters = problem.parameters().len();
+        for (row, &(place, value, uncertainty)) in known.iter().enumerate() {
+            if place >= parameters || known[..row].iter().any(|(before, ..)| *before == place) {
+                return Err(FitError::problem(format!(
+                    "parameter {place} is said to be known; each of the {parameters} parameters may be once"
+                )));
+            }
+            if !value.is_finite() {
+                return Err(FitError::option("the known value of a parameter", "finite", value));
+            }
+            // The inverse of a subnormal number overflows.
+            if !(uncertainty > 0.0 && uncertainty.is_finite() && uncertainty.recip().is_finite()) {
+                let of = "the standard uncertainty of a known value";
+                return Err(FitError::option(of, "positive and finite", uncertainty));
+            }
         }
         let mut blocks = problem.blocks().to_vec();
         if blocks.is_empty() {
             blocks.push(Block::new(problem.len(), (0..parameters).collect::<Vec<_>>()));
         }
-        blocks.push(Block::new(count, places));
-        let weights = definite::lower_inverse(&factored, count);
-        Ok(Self { problem, places: places.to_vec(), values: values.to_vec(), weights, blocks })
-    }
-
-    /// The same for residuals of the data with this standard deviation, in their unit, instead of 1.
-    #[must_use]
-    pub fn with_residual_deviation(mut self, deviation: f64) -> Self {
-        self.weights.iter_mut().for_each(|weight| *weight *= deviation);
-        self
-    }
-
-    fn write_known(&self, p: &[f64], residuals: &mut [f64]) {
-        let away: Vec<f64> = self.places.iter().zip(&self.values).map(|(&place, value)| p[place] - value).collect();
-        for (residual, weights) in residuals.iter_mut().zip(self.weights.chunks_exact(away.len().max(1))) {
-            *residual = weights.iter().zip(&away).map(|(weight, away)| weight * away).sum();
-        }
+        blocks.extend(known.iter().map(|(place, ..)| Block::new(1, [*place])));
+        Ok(Self { problem, known: known.to_vec(), blocks })
     }
 }
 
@@ -185,20 +136,19 @@ impl<P: Residuals> Residuals for WithPriors<P> {
         self.problem.parameters()
     }
     fn len(&self) -> usize {
-        self.problem.len() + self.places.len()
+        self.problem.len() + self.known.len()
     }
     fn evaluate(&self, p: &[f64], residuals: &mut [f64], jacobian: Option<&mut [f64]>) -> Result<(), EvaluationError> {
-        let (of_data, known) = residuals.split_at_mut(self.problem.len());
-        self.write_known(p, known);
-        let of_data_jacobian = jacobian.map(|jacobian| {
-            let count = self.places.len();
-            let (of_data, known) = jacobian.split_at_mut(jacobian.len() - count * count);
-            for (at, element) in known.iter_mut().enumerate() {
-                *element = self.weights[at % count * count + at / count];
-            }
+        let (of_data, of_known) = residuals.split_at_mut(self.problem.len());
+        for (residual, (place, value, uncertainty)) in of_known.iter_mut().zip(&self.known) {
+            *residual = (p[*place] - value) / uncertainty;
+        }
+        let jacobian_of_data = jacobian.map(|jacobian| {
+            let (of_data, of_known) = jacobian.split_at_mut(jacobian.len() - self.known.len());
+            of_known.iter_mut().zip(&self.known).for_each(|(element, (.., u))| *element = u.recip());
             of_data
         });
-        self.problem.evaluate(p, of_data, of_data_jacobian)
+        self.problem.evaluate(p, of_data, jacobian_of_data)
     }
     fn derivatives(&self) -> Derivatives {
         self.problem.derivatives()
@@ -210,8 +160,10 @@ impl<P: Residuals> Residuals for WithPriors<P> {
         &self.blocks
     }
     fn block_residuals(&self, block: usize, p: &[f64], residuals: &mut [f64]) -> Result<bool, EvaluationError> {
-        if block + 1 == self.blocks.len() {
-            self.write_known(p, residuals);
+        let of_data = self.blocks.len() - self.known.len();
+        if block >= of_data {
+            let (place, value, uncertainty) = self.known[block - of_data];
+            residuals[0] = (p[place] - value) / uncertainty;
             return Ok(true);
         }
         if self.problem.blocks().is_empty() {
@@ -263,29 +215,23 @@ mod tests {
         }
     }
 
-    /// Correlated knowledge of the third and the first parameter.
-    const PLACES: [usize; 2] = [2, 0];
-    const KNOWN: [f64; 2] = [0.5, 2.0];
-    const COVARIANCE: [f64; 4] = [0.04, 0.03, 0.03, 0.09];
+    /// Knowledge of the third and the first parameter.
+    const KNOWN: [(usize, f64, f64); 2] = [(2, 0.5, 0.2), (0, 2.0, 0.3)];
 
     /// θ = (XᵀX + Σ⁻¹)⁻¹ (Xᵀy + Σ⁻¹m), with the inverse as covariance.
     #[test]
     fn a_gaussian_prior_on_a_linear_problem_is_generalised_least_squares() {
-        for (derivatives, deviation) in [(Derivatives::All, 1.0), (Derivatives::None, 1.0), (Derivatives::All, 3.0)] {
+        for derivatives in [Derivatives::All, Derivatives::None] {
             let linear = Linear::new(derivatives);
-            let precision = DMatrix::from_row_slice(2, 2, &COVARIANCE).try_inverse().unwrap() * (deviation * deviation);
             let mut matrix = linear.0.transpose() * &linear.0;
             let mut right = linear.0.transpose() * &linear.1;
-            for (a, &i) in PLACES.iter().enumerate() {
-                for (b, &j) in PLACES.iter().enumerate() {
-                    matrix[(i, j)] += precision[(a, b)];
-                    right[i] += precision[(a, b)] * KNOWN[b];
-                }
+            for (j, value, uncertainty) in KNOWN {
+                matrix[(j, j)] += uncertainty.powi(-2);
+                right[j] += value * uncertainty.powi(-2);
             }
             let covariance = matrix.try_inverse().unwrap();
             let expected = &covariance * right;
-            let problem = WithPriors::correlated(&linear, &PLACES, &KNOWN, &COVARIANCE).unwrap();
-            let problem = problem.with_residual_deviation(deviation);
+            let problem = WithPriors::new(&linear, &KNOWN).unwrap();
             let fit = solve(&problem, &[0.0; 3], &Options::default()).unwrap();
             assert_eq!(fit.residuals().len(), COUNT + 2);
             for j in 0..3 {
@@ -301,15 +247,10 @@ mod tests {
     #[test]
     fn impossible_knowledge_is_refused() {
         let linear = Linear::new(Derivatives::All);
-        let refusal = |places: &[usize], values: &[f64], covariance: &[f64]| {
-            WithPriors::correlated(&linear, places, values, covariance).unwrap_err().to_string()
-        };
-        assert!(refusal(&[0], &[1.0, 2.0], &[1.0]).contains("1 known parameters have 2 values"));
-        assert!(refusal(&[3], &[1.0], &[1.0]).contains("parameter 3 is said to be known"));
-        assert!(refusal(&[1, 1], &KNOWN, &COVARIANCE).contains("may be once"));
-        assert!(refusal(&PLACES, &KNOWN, &[1.0, 1.0, 1.0, 1.0]).contains("positive definite"));
-        assert!(refusal(&PLACES, &KNOWN, &[1.0, 0.5, 0.4, 1.0]).contains("symmetric"));
-        assert!(WithPriors::new(&linear, &[(0, f64::NAN, 1.0)]).unwrap_err().to_string().contains("must be finite"));
-        assert!(WithPriors::new(&linear, &[(0, 1.0, 0.0)]).is_err());
+        let refusal = |known: &[(usize, f64, f64)]| WithPriors::new(&linear, known).unwrap_err().to_string();
+        assert!(refusal(&[(3, 1.0, 1.0)]).contains("parameter 3 is said to be known"));
+        assert!(refusal(&[(1, 1.0, 1.0), (1, 2.0, 1.0)]).contains("may be once"));
+        assert!(refusal(&[(0, f64::NAN, 1.0)]).contains("must be finite"));
+        assert!(refusal(&[(0, 1.0, 0.0)]).contains("must be positive"));
     }
 }

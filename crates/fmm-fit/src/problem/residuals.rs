@@ -80,7 +80,7 @@ use crate::problem::block::Block;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no least-squares problem",
     label = "this does not implement `Residuals`",
-    note = "a formula that implements `Model` becomes a problem if you wrap it in `Automatic::<_, N>::new(model)`, N being the number of its parameters; a closure if you give it to `fit`, `curve_fit`, `curve` or `ClosureProblem::new`"
+    note = "a formula that implements `Model` becomes a problem if you wrap it in `Automatic::<_, N>::new(model)`, N being the number of its parameters; a closure if you give it to `curve_fit`, `curve` or `ClosureProblem::new`"
 )]
 pub trait Residuals {
     /// The parameters: names, units and bounds. Equal bounds hold a parameter fixed.

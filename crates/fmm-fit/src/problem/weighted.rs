@@ -68,16 +68,6 @@ impl<P: Residuals> Weighted<P> {
         }
     }
 
-    /// The problem with its own residuals.
-    pub fn problem(&self) -> &P {
-        &self.problem
-    }
-
-    /// The standard uncertainties of the residuals, in their unit.
-    pub fn uncertainties(&self) -> &[f64] {
-        &self.uncertainties
-    }
-
     /// Divides residuals, the first of which is that of `row`.
     fn divide(&self, row: usize, residuals: &mut [f64]) {
         for (residual, uncertainty) in residuals.iter_mut().zip(&self.uncertainties[row..]) {

@@ -125,11 +125,6 @@ impl LinearRegression {
         if is_finite { Ok((regression, found.solution)) } else { Err(overflow()) }
     }
 
-    /// Names of the columns.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.names.iter().map(String::as_str)
-    }
-
     /// βⱼ, one per column; of those that explain the data equally well the shortest, in columns of unit length.
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
@@ -148,12 +143,6 @@ impl LinearRegression {
             return None;
         }
         Some(self.unit_deviation()?.powi(2) * self.roots.iter().map(|root| root[i] * root[j]).sum::<f64>())
-    }
-
-    /// Correlation coefficient of the coefficients of columns `i` and `j`.
-    pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
-        let scale = self.standard_uncertainty(i)? * self.standard_uncertainty(j)?;
-        (scale > 0.0).then_some(self.covariance(i, j)? / scale)
     }
 
     /// The interval that holds the coefficient of column `j` with probability `level`, by Student's t or, with absolute

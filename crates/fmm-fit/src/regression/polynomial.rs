@@ -3,9 +3,7 @@
 use crate::error::FitError;
 use crate::regression::double_double::DoubleDouble;
 use crate::regression::linear_regression::LinearRegression;
-use crate::regression::weighting::{
-    Weighting, check_finite, no_column, overflow, too_few_abscissae, too_few_observations,
-};
+use crate::regression::weighting::{Weighting, check_finite, overflow, too_few_abscissae, too_few_observations};
 use crate::result::prediction::Prediction;
 
 /// A polynomial through observations.
@@ -38,7 +36,6 @@ pub struct Polynomial {
     local_roots: Vec<Vec<f64>>,
     centre: f64,
     scale: f64,
-    lowest: usize,
 }
 
 impl Polynomial {
@@ -48,31 +45,16 @@ impl Polynomial {
     /// [`FitError`] if lengths differ, a value is not finite, an uncertainty not positive, or if there are not
     /// order + 1 different abscissae.
     pub fn fit(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
-        Self::of(x, y, 0, order, weighting)
-    }
-
-    /// [`fit`](Self::fit) without the constant term; the coefficients begin with that of x.
-    ///
-    /// # Errors
-    /// Those of [`fit`](Self::fit); the different abscissae must not be zero, and `order` not either.
-    pub fn fit_through_origin(x: &[f64], y: &[f64], order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
-        Self::of(x, y, 1, order, weighting)
-    }
-
-    fn of(x: &[f64], y: &[f64], lowest: usize, order: usize, weighting: Weighting<'_>) -> Result<Self, FitError> {
         check_finite("x", x, y.len())?;
-        if order < lowest {
-            return Err(no_column());
-        }
-        let coefficients = (order - lowest).saturating_add(1);
+        let coefficients = order.saturating_add(1);
         if x.len() < coefficients {
             return Err(too_few_observations(x.len(), coefficients));
         }
-        let distinct = count_distinct(x, lowest > 0);
+        let distinct = count_distinct(x);
         if distinct < coefficients {
             return Err(too_few_abscissae(distinct, coefficients));
         }
-        let (centre, scale) = if lowest > 0 { (0.0, power_of_two_above(largest(x))) } else { frame(x) };
+        let (centre, scale) = frame(x);
         let span = scale.powf(order as f64);
         // A power of the scale that overflows would turn coefficients into zeros or infinities.
         if !(span.is_normal() && span.recip().is_normal()) {
@@ -80,17 +62,17 @@ impl Polynomial {
         }
         let t: Vec<DoubleDouble> = x.iter().map(|x| DoubleDouble::difference(*x, centre).scaled(1.0 / scale)).collect();
         let mut columns: Vec<Vec<DoubleDouble>> = Vec::with_capacity(coefficients);
-        columns.push(if lowest > 0 { t.clone() } else { vec![DoubleDouble::from(1.0); x.len()] });
+        columns.push(vec![DoubleDouble::from(1.0); x.len()]);
         for k in 1..coefficients {
             let next = columns[k - 1].iter().zip(&t).map(|(power, t)| *power * *t).collect();
             columns.push(next);
         }
-        let names = (lowest..=order).map(|k| format!("x^{k}")).collect();
-        let (mut regression, solution) = LinearRegression::of(names, columns, y, weighting, lowest == 0)?;
+        let names = (0..=order).map(|k| format!("x^{k}")).collect();
+        let (mut regression, solution) = LinearRegression::of(names, columns, y, weighting, true)?;
         if regression.rank() < coefficients {
             return Err(too_few_abscissae(regression.rank(), coefficients));
         }
-        let global = |local: &[DoubleDouble]| -> Vec<f64> { expand(local, lowest, centre, scale) };
+        let global = |local: &[DoubleDouble]| -> Vec<f64> { expand(local, centre, scale) };
         let local_coefficients = std::mem::replace(&mut regression.coefficients, global(&solution));
         let roots = regression.roots.iter().map(|root| {
             let root: Vec<DoubleDouble> = root.iter().map(|value| DoubleDouble::from(*value)).collect();
@@ -102,16 +84,16 @@ impl Polynomial {
         if !all.copied().all(f64::is_finite) {
             return Err(overflow());
         }
-        Ok(Self { regression, local_coefficients, local_roots, centre, scale, lowest })
+        Ok(Self { regression, local_coefficients, local_roots, centre, scale })
     }
 
-    /// The coefficients of the powers of x, from the lowest on.
+    /// The coefficients of the powers of x, from x⁰ on.
     pub fn coefficients(&self) -> &[f64] {
         self.regression.coefficients()
     }
 
-    /// Uncertainties, residuals and what else there is to know of the coefficients; columns are the powers from the
-    /// lowest on. Its singular values are those of the powers of t.
+    /// Uncertainties, residuals and what else there is to know of the coefficients; columns are the powers from x⁰
+    /// on. Its singular values are those of the powers of t.
     pub fn regression(&self) -> &LinearRegression {
         &self.regression
     }
@@ -119,16 +101,14 @@ impl Polynomial {
     /// The value of the polynomial at `x`.
     pub fn value(&self, x: f64) -> f64 {
         let t = (x - self.centre) / self.scale;
-        let sum = self.local_coefficients.iter().rev().fold(0.0, |sum, a| sum * t + a);
-        if self.lowest > 0 { sum * t } else { sum }
+        self.local_coefficients.iter().rev().fold(0.0, |sum, a| sum * t + a)
     }
 
     /// The prediction at `x`; `None` without a degree of freedom to tell s.
     pub fn predict(&self, x: f64) -> Option<Prediction> {
         let t = (x - self.centre) / self.scale;
-        let first = if self.lowest > 0 { t } else { 1.0 };
-        let row: Vec<f64> =
-            std::iter::successors(Some(first), |power| Some(power * t)).take(self.local_coefficients.len()).collect();
+        let powers = std::iter::successors(Some(1.0), |power| Some(power * t));
+        let row: Vec<f64> = powers.take(self.local_coefficients.len()).collect();
         self.regression.predict_by(&self.local_coefficients, &self.local_roots, &row)
     }
 }
@@ -144,26 +124,22 @@ fn frame(x: &[f64]) -> (f64, f64) {
     (if centre.is_finite() { centre } else { middle }, scale)
 }
 
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0f64, |largest, x| largest.max(x.abs()))
-}
-
 /// The least power of two not below a magnitude; 1 for zero.
 fn power_of_two_above(magnitude: f64) -> f64 {
     if magnitude > 0.0 { magnitude.log2().ceil().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
 }
 
-/// Number of different values, zero not counted if it tells nothing.
-pub(crate) fn count_distinct(x: &[f64], without_zero: bool) -> usize {
-    let mut sorted: Vec<f64> = x.iter().copied().filter(|x| !without_zero || *x != 0.0).collect();
+/// Number of different values.
+fn count_distinct(x: &[f64]) -> usize {
+    let mut sorted = x.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.dedup();
     sorted.len()
 }
 
 /// Coefficients in powers of x from those in powers of t, by Horner's scheme.
-fn expand(local: &[DoubleDouble], lowest: usize, centre: f64, scale: f64) -> Vec<f64> {
-    let mut power = if lowest > 0 { 1.0 / scale } else { 1.0 };
+fn expand(local: &[DoubleDouble], centre: f64, scale: f64) -> Vec<f64> {
+    let mut power = 1.0;
     let mut values: Vec<DoubleDouble> = Vec::with_capacity(local.len());
     for value in local {
         values.push(value.scaled(power));
@@ -204,7 +180,7 @@ pub struct StraightLine {
 }
 
 impl StraightLine {
-    /// Fits a straight line to `y` at the abscissae `x`. [`Polynomial::fit_through_origin`] fits one without intercept,
+    /// Fits a straight line to `y` at the abscissae `x`. [`LinearRegression`] on x alone fits one without intercept,
     /// and [`YorkLine`](crate::YorkLine) one with uncertainties in both variables.
     ///
     /// # Errors
@@ -257,19 +233,7 @@ mod tests {
     fn shift_of_a_cube() {
         // ((x − 3)/2)³ = x³/8 − 9x²/8 + 27x/8 − 27/8
         let cube = [0.0, 0.0, 0.0, 1.0].map(DoubleDouble::from);
-        assert_eq!(expand(&cube, 0, 3.0, 2.0), [-3.375, 3.375, -1.125, 0.125]);
-    }
-
-    #[test]
-    fn through_the_origin_there_is_no_constant() {
-        let (x, y) = ([1.0, 2.0, 4.0], [2.0, 5.0, 7.0]);
-        let line = Polynomial::fit_through_origin(&x, &y, 1, Weighting::Equal).unwrap();
-        // Σxy/Σx²
-        assert!((line.coefficients()[0] - 40.0 / 21.0).abs() < 1e-15);
-        let r_squared = 1.0 - (78.0 - 1600.0 / 21.0) / 78.0;
-        assert!((line.regression().r_squared().unwrap() - r_squared).abs() < 1e-14);
-        assert!((line.value(3.0) - 40.0 / 7.0).abs() < 1e-14);
-        assert_eq!(line.predict(0.0).unwrap().standard_uncertainty(), 0.0);
+        assert_eq!(expand(&cube, 3.0, 2.0), [-3.375, 3.375, -1.125, 0.125]);
     }
 
     #[test]
@@ -291,8 +255,6 @@ mod tests {
     fn equal_abscissae_are_too_few() {
         let error = Polynomial::fit(&[2.0; 4], &[1.0, 2.0, 3.0, 4.0], 1, Weighting::Equal).unwrap_err();
         assert!(error.to_string().contains("1 different values of x"), "{error}");
-        let error = Polynomial::fit_through_origin(&[0.0; 4], &[1.0; 4], 1, Weighting::Equal).unwrap_err();
-        assert!(error.to_string().contains("0 different values of x"), "{error}");
         let mean = Polynomial::fit(&[2.0; 4], &[1.0, 2.0, 3.0, 4.0], 0, Weighting::Equal).unwrap();
         assert_eq!(mean.coefficients(), [2.5]);
     }

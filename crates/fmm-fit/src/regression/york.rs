@@ -178,11 +178,6 @@ impl YorkLine {
         (variance + (x * self.slope_uncertainty).powi(2)).max(0.0).sqrt()
     }
 
-    /// Iterations of the slope.
-    pub fn iterations(&self) -> usize {
-        self.iterations
-    }
-
     /// True if the slope no longer changed when the iteration ended. Otherwise the points hardly lie along a line.
     pub fn is_converged(&self) -> bool {
         self.is_converged
@@ -336,7 +331,7 @@ mod tests {
     #[test]
     fn pearsons_data_with_yorks_weights() {
         let line = YorkLine::fit(&pearson()).unwrap();
-        assert!(line.is_converged(), "after {} iterations", line.iterations());
+        assert!(line.is_converged(), "after {} iterations", line.iterations);
         // Slope and intercept as published for these data; S/(n − 2) and the uncertainties as the R package bfsl and
         // LinearFitXYerrors.jl, which implement the same equations, test them.
         assert_close(line.slope(), -0.480_533_407, 2e-9, "slope");

@@ -5,6 +5,7 @@ use fmm_model::{Parameter, coverage_factor};
 use crate::algebra::spectrum::Spectrum;
 use crate::algebra::triangle::Triangle;
 use crate::error::FitError;
+use crate::problem::residuals::Residuals;
 use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::null_direction::{NullDirection, null_directions};
 use crate::solver::evaluation::Scheme;
@@ -49,7 +50,6 @@ pub struct Fit {
     residual_evaluations: usize,
     jacobian_evaluations: usize,
     has_exact_jacobian: bool,
-    model_error: Option<String>,
     non_finite: Option<NonFinite>,
     jacobian_mismatches: Vec<JacobianMismatch>,
 }
@@ -79,15 +79,12 @@ impl Fit {
         let free = minimizer.free();
         let inside: Vec<usize> = (0..free.len()).filter(|&c| !estimates[free[c]].status.is_at_bound()).collect();
         let columns: Vec<usize> = inside.iter().map(|&column| free[column]).collect();
-        let mut triangle = Triangle::default();
-        triangle.select(
-            minimizer.factor_of_jacobian(),
-            &inside,
-            |row| minimizer.factor_of_jacobian().q(row),
-            &mut Vec::new(),
-        );
-
-        let spectrum = Spectrum::of(&triangle);
+        let spectrum_of = |columns: &[usize]| {
+            let (whole, mut triangle) = (minimizer.factor_of_jacobian(), Triangle::default());
+            triangle.select(whole, columns, |row| whole.q(row), &mut Vec::new());
+            Spectrum::of(&triangle)
+        };
+        let spectrum = spectrum_of(&inside);
         let threshold = minimizer.scheme().rank_threshold(residuals.len());
         let rank = spectrum.rank(threshold);
         let noise = threshold.sqrt().max(1e-6);
@@ -107,15 +104,7 @@ impl Fit {
         let relaxed_unit_covariance = if inside.len() == free.len() {
             None
         } else {
-            let all: Vec<usize> = (0..free.len()).collect();
-            let mut triangle = Triangle::default();
-            triangle.select(
-                minimizer.factor_of_jacobian(),
-                &all,
-                |row| minimizer.factor_of_jacobian().q(row),
-                &mut Vec::new(),
-            );
-            let spectrum = Spectrum::of(&triangle);
+            let spectrum = spectrum_of(&(0..free.len()).collect::<Vec<_>>());
             let rank = spectrum.rank(threshold);
             (rank == free.len()).then(|| self::unit_covariance(&spectrum, rank, free, estimates.len(), |_| true))
         };
@@ -135,7 +124,6 @@ impl Fit {
             residual_evaluations: minimizer.residual_evaluations(),
             jacobian_evaluations: minimizer.jacobian_evaluations(),
             has_exact_jacobian: minimizer.scheme() == Scheme::Exact,
-            model_error: minimizer.model_error().map(str::to_owned),
             non_finite: minimizer.non_finite().cloned(),
             jacobian_mismatches: minimizer.mismatches.clone(),
         };
@@ -153,6 +141,25 @@ impl Fit {
     /// One estimate per parameter, in the order of the problem.
     pub fn estimates(&self) -> &[Estimate] {
         &self.estimates
+    }
+
+    /// Element (i, j) of a matrix with a row and a column for each parameter.
+    pub(crate) fn element(&self, matrix: &[Option<f64>], i: usize, j: usize) -> Option<f64> {
+        let count = self.estimates.len();
+        if i < count && j < count { matrix[i * count + j] } else { None }
+    }
+
+    /// An error unless this fit has the size of one of `problem`.
+    pub(crate) fn require_of<P: Residuals + ?Sized>(&self, problem: &P) -> Result<(), FitError> {
+        let sizes = ((self.residuals.len(), self.values.len()), (problem.len(), problem.parameters().len()));
+        if sizes.0 == sizes.1 {
+            return Ok(());
+        }
+        let (fit, problem) = sizes;
+        let what = format!(
+            "the fit has {fit:?} residuals and parameters, but the problem {problem:?}; it must be that of the problem"
+        );
+        Err(FitError::OtherFit { what })
     }
 
     pub(crate) fn estimates_mut(&mut self) -> &mut [Estimate] {
@@ -225,8 +232,7 @@ impl Fit {
     /// divided by its standard uncertainty, and a factor in the response of the estimates to any other change of the
     /// residuals. Needs no degree of freedom.
     pub fn unit_covariance(&self, i: usize, j: usize) -> Option<f64> {
-        let count = self.estimates.len();
-        if i < count && j < count { self.unit_covariance[i * count + j] } else { None }
+        self.element(&self.unit_covariance, i, j)
     }
 
     /// Covariance of the estimates of parameters `i` and `j` as if the bounds that values lie on were not there.
@@ -237,9 +243,7 @@ impl Fit {
     /// then not all determined.
     pub fn relaxed_covariance(&self, i: usize, j: usize) -> Option<f64> {
         let Some(relaxed) = &self.relaxed_unit_covariance else { return self.covariance(i, j) };
-        let count = self.estimates.len();
-        let unit = if i < count && j < count { relaxed[i * count + j] } else { None };
-        Some(self.residual_standard_deviation()?.powi(2) * unit?)
+        Some(self.residual_standard_deviation()?.powi(2) * self.element(relaxed, i, j)?)
     }
 
     /// Correlation coefficient of the estimates of parameters `i` and `j`; `None` where there is no covariance or no
@@ -293,11 +297,6 @@ impl Fit {
     /// [looked at](crate::Options::with_jacobian_check).
     pub fn jacobian_mismatches(&self) -> &[JacobianMismatch] {
         &self.jacobian_mismatches
-    }
-
-    /// The message of the model at its last failure at a trial point.
-    pub fn model_error(&self) -> Option<&str> {
-        self.model_error.as_deref()
     }
 
     /// The number that was not finite at the last trial point that was given up for this; `None` if all were. It ended

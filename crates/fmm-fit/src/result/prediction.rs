@@ -173,7 +173,7 @@ const MANY_FOR_FISHER: f64 = 1e4;
 
 /// The factor for `order` estimates, and all that depends on them linearly, at once (Scheffé).
 pub(crate) fn simultaneous_coverage_factor(level: f64, order: usize, degrees_of_freedom: f64) -> Option<f64> {
-    if !(is_probability(level) && degrees_of_freedom > 0.0) {
+    if !(level > 0.0 && level < 1.0 && degrees_of_freedom > 0.0) {
         return None;
     }
     let count = order as f64;
@@ -184,10 +184,6 @@ pub(crate) fn simultaneous_coverage_factor(level: f64, order: usize, degrees_of_
         square * (1.0 + 0.5 * (square - count + 2.0) / degrees_of_freedom)
     };
     Some(square.sqrt())
-}
-
-pub(crate) fn is_probability(level: f64) -> bool {
-    level > 0.0 && level < 1.0
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::result::estimate::EstimateStatus;
+use crate::result::estimate::{Estimate, EstimateStatus};
 use crate::result::fit::Fit;
 use crate::result::null_direction::enumerate;
-use crate::solver::outcome::Outcome;
+use crate::solver::outcome::{NonFinite, Outcome};
 
 /// Correlations weaker than this are not worth a line.
 const NOTABLE_CORRELATION: f64 = 0.1;
@@ -97,43 +97,29 @@ impl Fit {
     }
 
     fn write_warnings(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let at_bound: Vec<&str> = self
-            .estimates()
-            .iter()
-            .filter(|estimate| estimate.status().is_at_bound())
-            .map(crate::result::estimate::Estimate::name)
-            .collect();
-        let is_plain = at_bound.is_empty() && self.null_directions().is_empty() && self.model_error().is_none();
-        let is_quiet = is_plain && self.jacobian_mismatches().is_empty();
-        if is_quiet && self.outcome().is_success() {
-            return Ok(());
-        }
-        writeln!(f, "[[warnings]]")?;
+        let mut warnings = Vec::new();
         if !self.outcome().is_success() {
-            writeln!(f, "  the values are the best found, not those of a minimum: {}", self.outcome())?;
+            warnings.push(format!("the values are the best found, not those of a minimum: {}", self.outcome()));
         }
-        if self.outcome() == Outcome::NonFinite
-            && let Some(reason) = self.non_finite()
+        if let Some(reason) = self.non_finite()
+            && (self.outcome() == Outcome::NonFinite || matches!(reason, NonFinite::Model(_)))
         {
-            writeln!(f, "  what had no finite value beyond them: {reason}")?;
+            warnings.push(format!("some trial points had no finite value; at the last of them {reason}"));
         }
-        for mismatch in self.jacobian_mismatches() {
-            writeln!(f, "  {mismatch}")?;
-        }
-        for direction in self.null_directions() {
-            writeln!(f, "  {direction}")?;
-        }
+        warnings.extend(self.jacobian_mismatches().iter().map(ToString::to_string));
+        warnings.extend(self.null_directions().iter().map(ToString::to_string));
+        let at_bound = self.estimates().iter().filter(|estimate| estimate.status().is_at_bound());
+        let at_bound: Vec<&str> = at_bound.map(Estimate::name).collect();
         if !at_bound.is_empty() {
             let (verb, theirs) = if at_bound.len() == 1 { ("lies", "it has") } else { ("lie", "they have") };
-            writeln!(
-                f,
-                "  {} {verb} at a bound: {theirs} no standard uncertainty, and those of the others hold at the bound",
-                enumerate(&at_bound)
-            )?;
+            let names = enumerate(&at_bound);
+            warnings.push(format!(
+                "{names} {verb} at a bound: {theirs} no standard uncertainty, and those of the others hold at the bound"
+            ));
         }
-        if let Some(error) = self.model_error() {
-            writeln!(f, "  the model had no value at some trial points; the last time it said: {error}")?;
+        if !warnings.is_empty() {
+            writeln!(f, "[[warnings]]")?;
         }
-        Ok(())
+        warnings.iter().try_for_each(|warning| writeln!(f, "  {warning}"))
     }
 }

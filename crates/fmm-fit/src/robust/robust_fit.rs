@@ -20,17 +20,6 @@ const OUTLYING: f64 = 3.5;
 /// Repetitions of fit and scale; they converge like a bisection or faster.
 const REPETITIONS: usize = 50;
 
-/// The scale of a loss: up to about which size a residual counts as in least squares.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Scale {
-    /// In the unit of the residuals.
-    Given(f64),
-    /// From the residuals: [`Loss::efficient_scale`] times their [`median_deviation`], with fit and scale repeated
-    /// until they agree. Residuals that are nearly all zero have no scale, which is an error.
-    Estimated,
-}
-
 /// 1.4826 times the median of the magnitudes of the residuals, the standard deviation of their good ones if these
 /// are normal; as `fitted` parameters make about as many residuals small, that many of the smallest are left out.
 ///
@@ -48,13 +37,17 @@ pub fn median_deviation(residuals: &[f64], fitted: usize) -> Option<f64> {
 
 /// Fits `problem` by `loss` instead of squares, from `start`.
 ///
+/// The `scale`, in the unit of the residuals, is up to about which size a residual counts as in least squares. Without
+/// one it comes from the residuals: [`Loss::efficient_scale`] times their [`median_deviation`], with fit and scale
+/// repeated until they agree. Residuals that are nearly all zero have no scale, which is an error.
+///
 /// A loss that forgets large residuals has no use for a start at which all are large. For `Cauchy`, `Arctan` and
 /// `Tukey` a fit by `SoftL1`, of the same or of its own estimated scale, therefore goes first. The limits of the
 /// options on iterations and evaluations hold for each fit, the one on time for all.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Loss, Options, Residuals, RobustFit, Scale, solve_robust};
+/// use fmm_fit::{Loss, Options, Residuals, RobustFit, solve_robust};
 /// # use fmm_model::Parameter;
 ///
 /// # struct Mean<'a>(&'a [f64], [Parameter; 1]);
@@ -69,7 +62,7 @@ pub fn median_deviation(residuals: &[f64], fitted: usize) -> Option<f64> {
 /// // Readings of one length, in mm; the fifth was read wrongly.
 /// let readings = [10.02, 9.98, 10.01, 9.97, 12.00, 10.03, 9.99];
 /// let mean = Mean(&readings, [Parameter::new("length", "l", "mm")]);
-/// let robust: RobustFit = solve_robust(&mean, &[10.0], Loss::Tukey, Scale::Estimated, &Options::default())?;
+/// let robust: RobustFit = solve_robust(&mean, &[10.0], Loss::Tukey, None, &Options::default())?;
 /// assert_eq!(robust.outliers(), [4]);
 /// assert_eq!(robust.weights()[4], 0.0);
 /// let (lower, upper) = robust.interval("length", 0.95).unwrap();
@@ -83,18 +76,18 @@ pub fn solve_robust<P: Residuals + ?Sized>(
     problem: &P,
     start: &[f64],
     loss: Loss,
-    scale: Scale,
+    scale: Option<f64>,
     options: &Options,
 ) -> Result<RobustFit, FitError> {
     let search = Search { problem, options, began: Instant::now() };
     let forgets = matches!(loss, Loss::Cauchy | Loss::Arctan | Loss::Tukey);
     let mut fit = match scale {
-        Scale::Given(scale) if forgets => {
+        Some(scale) if forgets => {
             let first = search.once(start, Loss::SoftL1, scale)?;
             search.once(first.fit.values(), loss, scale)?
         }
-        Scale::Given(scale) => search.once(start, loss, scale)?,
-        Scale::Estimated => {
+        Some(scale) => search.once(start, loss, scale)?,
+        None => {
             let mut residuals = vec![0.0; problem.len()];
             // A start without values is refused by name when the fit begins.
             let first =
@@ -241,12 +234,7 @@ impl RobustFit {
     ///
     /// Of a thousand normal residuals half a one is that far out.
     pub fn outliers(&self) -> Vec<usize> {
-        self.outliers_beyond(OUTLYING)
-    }
-
-    /// Indices of the residuals further than this many robust standard deviations from zero.
-    pub fn outliers_beyond(&self, deviations: f64) -> Vec<usize> {
-        let limit = self.deviation().map_or(f64::INFINITY, |deviation| deviations * deviation);
+        let limit = self.deviation().map_or(f64::INFINITY, |deviation| OUTLYING * deviation);
         (0..self.residuals.len()).filter(|&i| self.residuals[i].abs() > limit).collect()
     }
 
@@ -255,8 +243,7 @@ impl RobustFit {
     /// where the fit would go elsewhere without one of the residuals (hᵢ ≥ 1), which happens in small samples to losses
     /// that forget.
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
-        let count = self.fit.values().len();
-        if i < count && j < count { self.covariance[i * count + j] } else { None }
+        self.fit.element(&self.covariance, i, j)
     }
 
     /// Standard uncertainty of the estimate of parameter `i`, in its unit.

@@ -78,8 +78,6 @@ pub(crate) struct Evaluator {
     pub(crate) upper: Vec<f64>,
     pub(crate) residual_evaluations: usize,
     pub(crate) jacobian_evaluations: usize,
-    /// Message of the model at its last failure at a trial point.
-    pub(crate) model_error: Option<String>,
     /// The last number that was not finite.
     pub(crate) non_finite: Option<NonFinite>,
     /// The magnitude below which a value counts as zero in the choice of a difference step.
@@ -98,6 +96,14 @@ pub(crate) struct Evaluator {
 }
 
 impl Evaluator {
+    /// An evaluator of `problem` within its bounds, about `values`.
+    pub(crate) fn of<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Self, FitError> {
+        let mut evaluator = Self::default();
+        let bounds = problem.parameters().iter().map(|parameter| parameter.bounds());
+        evaluator.begin(problem, bounds.map(|bounds| (bounds.lower(), bounds.upper())), values)?;
+        Ok(evaluator)
+    }
+
     /// Prepares for `problem` with its parameters within `bounds`, beginning at `start`.
     ///
     /// # Errors
@@ -115,7 +121,6 @@ impl Evaluator {
         self.unfilled.clear();
         self.scheme = if problem.derivatives() == Derivatives::None { Scheme::Forward } else { Scheme::Exact };
         (self.residual_evaluations, self.jacobian_evaluations, self.evaluated_rows) = (0, 0, 0);
-        self.model_error = None;
         self.non_finite = None;
         self.is_jacobian_current = false;
         self.is_indivisible = false;
@@ -155,7 +160,7 @@ impl Evaluator {
         point.residuals.resize(problem.len(), 0.0);
         let jacobian = has_jacobian.then_some(self.jacobian.as_mut_slice());
         if let Err(error) = problem.evaluate(&point.values, &mut point.residuals, jacobian) {
-            self.remember_model_error(error.to_string());
+            self.non_finite = Some(NonFinite::Model(error.to_string()));
             point.sum_of_squares = f64::NAN;
             return false;
         }
@@ -192,7 +197,7 @@ impl Evaluator {
             self.scratch.resize(problem.len(), 0.0);
             // The residuals of the point stay: they may come of another pass, with other rounding.
             if let Err(error) = problem.evaluate(&point.values, &mut self.scratch, Some(&mut self.jacobian)) {
-                self.remember_model_error(error.to_string());
+                self.non_finite = Some(NonFinite::Model(error.to_string()));
                 return false;
             }
         }
@@ -209,18 +214,10 @@ impl Evaluator {
         true
     }
 
-    fn remember_model_error(&mut self, error: String) {
-        self.non_finite = Some(NonFinite::Model(error.clone()));
-        self.model_error = Some(error);
-    }
-
     /// Residuals and derivatives of `problem` at `values`, by central differences if it has none of its own; `None` if
     /// they are not finite. The columns of fixed parameters are meaningless.
     pub(crate) fn linearise<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Option<Linearised> {
-        let mut evaluator = Self::default();
-        let bounds =
-            problem.parameters().iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
-        evaluator.begin(problem, bounds, values).ok()?;
+        let mut evaluator = Self::of(problem, values).ok()?;
         let mut point = Point { values: values.to_vec(), ..Point::default() };
         if evaluator.scheme == Scheme::Forward {
             evaluator.scheme = Scheme::Central;

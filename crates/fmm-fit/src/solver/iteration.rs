@@ -11,8 +11,7 @@ use crate::solver::evaluation::{Evaluator, Point, Scheme};
 use crate::solver::minimizer::{Attempt, Minimizer, Phase};
 use crate::solver::outcome::Outcome;
 
-/// Radius of the first search and of those after a stall, as multiples of
-/// [`Options::with_initial_radius`](crate::Options::with_initial_radius).
+/// Radius of the first search and of those after a stall, over the scaled length of the start (1).
 const RADIUS_FACTORS: [f64; 4] = [1.0, 0.1, 10.0, 0.01];
 /// A search may only count as converged if the residual is that orthogonal to the free columns of the Jacobian.
 const STALL_COSINE: f64 = 1e-3;
@@ -62,7 +61,7 @@ impl Minimizer {
     }
 
     pub(crate) fn begin_search<P: Residuals + ?Sized>(&mut self, problem: &P) {
-        let factor = self.options.initial_radius * RADIUS_FACTORS[self.attempt];
+        let factor = RADIUS_FACTORS[self.attempt];
         let free_values = self.evaluator.free.iter().map(|&j| self.current.values[j]);
         self.region.begin(&self.current.triangle, free_values, factor);
         self.phase = Phase::Search;

@@ -87,9 +87,7 @@ pub fn check_jacobian<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Res
     let parameters = problem.parameters();
     check_parameters(parameters)?;
     check_start(parameters, values)?;
-    let mut evaluator = Evaluator::default();
-    let bounds = parameters.iter().map(|parameter| (parameter.bounds().lower(), parameter.bounds().upper()));
-    evaluator.begin(problem, bounds, values)?;
+    let mut evaluator = Evaluator::of(problem, values)?;
     let mut point = Point { values: values.to_vec(), ..Point::default() };
     let is_known = evaluator.residuals(problem, &mut point) && evaluator.differentiate(problem, &point);
     if !is_known || evaluator.scheme != Scheme::Exact {

@@ -175,10 +175,6 @@ impl Minimizer {
         &self.current.triangle
     }
 
-    pub(crate) fn model_error(&self) -> Option<&str> {
-        self.evaluator.model_error.as_deref()
-    }
-
     pub(crate) fn non_finite(&self) -> Option<&NonFinite> {
         self.evaluator.non_finite.as_ref()
     }
@@ -236,7 +232,7 @@ impl Minimizer {
     }
 
     fn bad_start<P: Residuals + ?Sized>(&self, problem: &P) -> FitError {
-        if self.evaluator.model_error.is_some() {
+        if let Some(NonFinite::Model(_)) = self.evaluator.non_finite {
             // Ask again for the error itself: a pure function fails in the same way.
             let mut residuals = vec![0.0; problem.len()];
             let mut jacobian = vec![0.0; self.evaluator.structure.len()];

@@ -25,7 +25,6 @@ pub struct Options {
     pub(crate) cost_tolerance: f64,
     pub(crate) step_tolerance: f64,
     pub(crate) gradient_tolerance: f64,
-    pub(crate) initial_radius: f64,
     pub(crate) polish_steps: usize,
     pub(crate) restarts: usize,
     pub(crate) jacobian_check: bool,
@@ -41,7 +40,6 @@ impl Default for Options {
             cost_tolerance: 1e-12,
             step_tolerance: 1e-12,
             gradient_tolerance: 1e-10,
-            initial_radius: 1.0,
             polish_steps: 40,
             restarts: 3,
             jacobian_check: cfg!(debug_assertions),
@@ -101,13 +99,6 @@ impl Options {
         self
     }
 
-    /// The first trust-region radius as a multiple of the scaled length of the start (1).
-    #[must_use]
-    pub fn with_initial_radius(mut self, factor: f64) -> Self {
-        self.initial_radius = factor;
-        self
-    }
-
     /// At most this many Gauss–Newton steps that sharpen the minimum once the search has ended (40). Without
     /// them about half of the digits are right, as a sum of squares is flat near its minimum.
     #[must_use]
@@ -159,11 +150,6 @@ impl Options {
                 return Err(FitError::option(&format!("the option {option}"), "at least 0 and below 1", value));
             }
         }
-        let value = self.initial_radius;
-        if value > 0.0 && value.is_finite() {
-            Ok(())
-        } else {
-            Err(FitError::option("the option initial radius", "positive and finite", value))
-        }
+        Ok(())
     }
 }

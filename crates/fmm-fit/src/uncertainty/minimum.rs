@@ -91,8 +91,8 @@ impl<'a, P: Residuals + ?Sized> Minimum<'a, P> {
 
     fn no_derivative(&self, parameter: usize) -> FitError {
         let parameter = self.problem.parameters()[parameter].name();
-        let reason = self.evaluator.model_error.as_deref().unwrap_or("the model is not finite there");
-        FitError::no_model(format!("there is no derivative by {parameter} at or near its value: {reason}"))
+        let reason = self.evaluator.non_finite.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+        FitError::no_model(format!("there is no derivative by {parameter} at or near its value{reason}"))
     }
 
     /// Gives values that are zero the magnitude at which they would matter; whether there is one.

@@ -1,6 +1,5 @@
 //! Uncertainty of a fit beyond the covariance of independent residuals about a linear model.
 
-pub(crate) mod correlated;
 mod forecast;
 mod minimum;
 pub(crate) mod profile;

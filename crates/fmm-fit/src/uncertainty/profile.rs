@@ -22,105 +22,99 @@ const LOWER: f64 = 1e-6;
 /// Relative accuracy of t at an end; the interval is as accurate.
 const ACCURACY: f64 = 1e-10;
 
-/// The interval that covers the parameter called `name` with probability `level`, from the sum of squares itself
-/// instead of its curvature at the minimum.
-///
-/// ```text
-/// S_k(θ) = min S over all other parameters with θ_k = θ
-/// (S_k(θ) − S_min)/s² = t²,     t = t_{(1 + level)/2, ν}
-/// ```
-///
-/// s² and ν are those of the `variance`: S_min over the degrees of freedom; 1; or another estimate.
-///
-/// For a linear model this is [`Fit::interval`]. For others it follows the bends of the valley and is that of any
-/// monotonic reparametrisation, which the Wald interval is not; where a parameter ends at a bound it is one-sided. An
-/// end is open if the profile stays below its threshold a thousand million first guesses away.
-///
-/// `fit` must be the fit of `problem`; each point of the profile is a fit from the nearest ones before. The limit of
-/// the options on iterations holds for each of them, those on evaluations and time for all.
-///
-/// ```
-/// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Options, ProfileEnd, ResidualVariance, Residuals, profile_interval, solve};
-/// # use fmm_model::Parameter;
-///
-/// # struct Rise<'a>(&'a [(f64, f64)], [Parameter; 2]);
-/// # impl Residuals for Rise<'_> {
-/// #     fn parameters(&self) -> &[Parameter] { &self.1 }
-/// #     fn len(&self) -> usize { self.0.len() }
-/// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
-/// #         residuals.iter_mut().zip(self.0).for_each(|(r, (t, y))| *r = p[0] * (1.0 - (-p[1] * t).exp()) - y);
-/// #         Ok(())
-/// #     }
-/// # }
-/// // A rise that is over at the first reading but one: its rate may be anything above 1.17/s.
-/// let data = [(1.0, 0.97), (2.0, 1.01), (3.0, 0.98), (4.0, 1.02), (5.0, 0.99)];
-/// let rise = Rise(&data, [Parameter::new("height", "a", "1"), Parameter::new("rate", "b", "1/s")]);
-/// let options = Options::default();
-/// let fit = solve(&rise, &[1.0, 1.0], &options)?;
-/// let interval = profile_interval(&rise, &fit, "rate", 0.95, ResidualVariance::Estimated, &options).unwrap();
-/// assert!(matches!(interval.lower(), ProfileEnd::At(_)));
-/// assert_eq!(interval.upper(), ProfileEnd::Open);
-/// # Ok::<(), fmm_fit::FitError>(())
-/// ```
-///
-/// # Errors
-/// [`FitError`] if the fit is not one of this problem or not at its lowest minimum, if the level or the parameter
-/// is impossible, or if the fit with the fixed parameter fails.
-///
-/// # References
-/// D. M. Bates, D. G. Watts, "Nonlinear Regression Analysis and Its Applications", Wiley (1988), ch. 6.
-pub fn profile_interval<P: Residuals + ?Sized>(
-    problem: &P,
-    fit: &Fit,
-    name: &str,
-    level: f64,
-    variance: ResidualVariance,
-    options: &Options,
-) -> Result<ProfileInterval, FitError> {
-    require_same(problem, fit)?;
-    let position = problem.parameters().iter().position(|parameter| parameter.name() == name);
-    let index = position.ok_or_else(|| FitError::unknown_name(format!("there is no parameter called {name}")))?;
-    if fit.estimates()[index].status() == EstimateStatus::Fixed {
-        return Err(FitError::problem(format!("{name} is fixed and has no interval")));
-    }
-    if !(level > 0.0 && level < 1.0) {
-        let what = format!("the level of an interval must be above 0 and below 1, but is {level}");
-        return Err(FitError::out_of_range(what, level));
-    }
-    if !fit.outcome().is_success() {
-        return Err(FitError::no_minimum(format!("the fit is not at a minimum: {}", fit.outcome())));
-    }
-    let scale = variance.scale(fit, level).ok_or_else(|| {
-        FitError::undetermined(
-            "the fit leaves no residual or no degree of freedom, so the variance cannot be estimated from it",
-        )
-    })?;
-    let mut profile = Profile::new(problem, fit, index, scale, options);
-    let lower = profile.end(-1.0)?;
-    let upper = profile.end(1.0)?;
-    profile.points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(ProfileInterval {
-        level,
-        index,
-        scale,
-        lower,
-        upper,
-        points: profile.points,
-        residual_evaluations: profile.residual_evaluations,
-    })
-}
-
-/// Refuses a `fit` that cannot be one of `problem`.
-fn require_same<P: Residuals + ?Sized>(problem: &P, fit: &Fit) -> Result<(), FitError> {
-    let sizes = ((fit.residuals().len(), fit.values().len()), (problem.len(), problem.parameters().len()));
-    if sizes.0 == sizes.1 { Ok(()) } else { Err(FitError::other_fit(sizes.0, sizes.1)) }
-}
-
 /// Even steps of a curve beyond each end, as a share of its distance from the estimate.
 const BEYOND: f64 = 0.15;
 
 impl ProfileInterval {
+    /// The interval that covers the parameter called `name` with probability `level`, from the sum of squares itself
+    /// instead of its curvature at the minimum.
+    ///
+    /// ```text
+    /// S_k(θ) = min S over all other parameters with θ_k = θ
+    /// (S_k(θ) − S_min)/s² = t²,     t = t_{(1 + level)/2, ν}
+    /// ```
+    ///
+    /// s² and ν are those of the `variance`: S_min over the degrees of freedom; 1; or another estimate.
+    ///
+    /// For a linear model this is [`Fit::interval`]. For others it follows the bends of the valley and is that of any
+    /// monotonic reparametrisation, which the Wald interval is not; where a parameter ends at a bound it is one-sided.
+    /// An end is open if the profile stays below its threshold a thousand million first guesses away.
+    ///
+    /// `fit` must be the fit of `problem`; each point of the profile is a fit from the nearest ones before. The limit
+    /// of the options on iterations holds for each of them, those on evaluations and time for all.
+    ///
+    /// ```
+    /// # use fmm_fit::EvaluationError;
+    /// use fmm_fit::{Options, ProfileEnd, ProfileInterval, ResidualVariance, Residuals, solve};
+    /// # use fmm_model::Parameter;
+    ///
+    /// # struct Rise<'a>(&'a [(f64, f64)], [Parameter; 2]);
+    /// # impl Residuals for Rise<'_> {
+    /// #     fn parameters(&self) -> &[Parameter] { &self.1 }
+    /// #     fn len(&self) -> usize { self.0.len() }
+    /// #     fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+    /// #         residuals.iter_mut().zip(self.0).for_each(|(r, (t, y))| *r = p[0] * (1.0 - (-p[1] * t).exp()) - y);
+    /// #         Ok(())
+    /// #     }
+    /// # }
+    /// // A rise that is over at the first reading but one: its rate may be anything above 1.17/s.
+    /// let data = [(1.0, 0.97), (2.0, 1.01), (3.0, 0.98), (4.0, 1.02), (5.0, 0.99)];
+    /// let rise = Rise(&data, [Parameter::new("height", "a", "1"), Parameter::new("rate", "b", "1/s")]);
+    /// let options = Options::default();
+    /// let fit = solve(&rise, &[1.0, 1.0], &options)?;
+    /// let interval = ProfileInterval::of(&rise, &fit, "rate", 0.95, ResidualVariance::Estimated, &options).unwrap();
+    /// assert!(matches!(interval.lower(), ProfileEnd::At(_)));
+    /// assert_eq!(interval.upper(), ProfileEnd::Open);
+    /// # Ok::<(), fmm_fit::FitError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`FitError`] if the fit is not one of this problem or not at its lowest minimum, if the level or the parameter
+    /// is impossible, or if the fit with the fixed parameter fails.
+    ///
+    /// # References
+    /// D. M. Bates, D. G. Watts, "Nonlinear Regression Analysis and Its Applications", Wiley (1988), ch. 6.
+    pub fn of<P: Residuals + ?Sized>(
+        problem: &P,
+        fit: &Fit,
+        name: &str,
+        level: f64,
+        variance: ResidualVariance,
+        options: &Options,
+    ) -> Result<Self, FitError> {
+        fit.require_of(problem)?;
+        let position = problem.parameters().iter().position(|parameter| parameter.name() == name);
+        let index = position.ok_or_else(|| FitError::unknown_name(format!("there is no parameter called {name}")))?;
+        if fit.estimates()[index].status() == EstimateStatus::Fixed {
+            return Err(FitError::problem(format!("{name} is fixed and has no interval")));
+        }
+        if !(level > 0.0 && level < 1.0) {
+            let what = format!("the level of an interval must be above 0 and below 1, but is {level}");
+            return Err(FitError::out_of_range(what, level));
+        }
+        if !fit.outcome().is_success() {
+            return Err(FitError::no_minimum(format!("the fit is not at a minimum: {}", fit.outcome())));
+        }
+        let scale = variance.scale(fit, level).ok_or_else(|| {
+            FitError::undetermined(
+                "the fit leaves no residual or no degree of freedom, so the variance cannot be estimated from it",
+            )
+        })?;
+        let mut profile = Profile::new(problem, fit, index, scale, options);
+        let lower = profile.end(-1.0)?;
+        let upper = profile.end(1.0)?;
+        profile.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(Self {
+            level,
+            index,
+            scale,
+            lower,
+            upper,
+            points: profile.points,
+            residual_evaluations: profile.residual_evaluations,
+        })
+    }
+
     /// The profile as a curve to be drawn: values of the parameter, ascending, and (S_k − S_min)/s² there, at up to
     /// `count` even steps on either side of the estimate, as far as a little beyond the end, or up to a bound or edge
     /// that ends it.
@@ -132,7 +126,7 @@ impl ProfileInterval {
     /// `problem`, `fit` and `options` are those of the interval.
     ///
     /// # Errors
-    /// Those of [`profile_interval`].
+    /// Those of [`of`](Self::of).
     pub fn curve<P: Residuals + ?Sized>(
         &self,
         problem: &P,
@@ -140,7 +134,7 @@ impl ProfileInterval {
         count: usize,
         options: &Options,
     ) -> Result<Vec<(f64, f64)>, FitError> {
-        require_same(problem, fit)?;
+        fit.require_of(problem)?;
         let unknown = || FitError::unknown_name(format!("there is no parameter called number {}", self.index));
         let bounds = problem.parameters().get(self.index).ok_or_else(unknown)?.bounds();
         let best = fit.values()[self.index];

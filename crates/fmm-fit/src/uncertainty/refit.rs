@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use fmm_model::{Bounds, Parameter};
+use fmm_model::Parameter;
 
 use crate::algebra::spectrum::is_surely_of_full_rank;
 use crate::algebra::triangle::Triangle;
@@ -358,16 +358,9 @@ impl<'a, P: Residuals + ?Sized> Refit<'a, P> {
 
     /// A fit from these values.
     fn search(&self, values: &mut [f64]) -> Result<(), FitError> {
-        let mut parameters = self.problem.parameters().to_vec();
-        for &j in &self.inputs {
-            let fixed = Bounds::new(values[j], values[j]).map_err(|error| {
-                let input = parameters[j].name();
-                FitError::out_of_range(format!("the input {input} has no valid value: {error}"), values[j])
-            })?;
-            parameters[j] = parameters[j].clone().bounded(fixed);
-        }
+        let fixed = WithFixed::new(self.problem, self.inputs.iter().map(|&j| (j, values[j])))?;
         let mut minimizer = Minimizer::new(self.options.clone());
-        let outcome = minimizer.minimize(&WithFixed::within(self.problem, parameters), values)?;
+        let outcome = minimizer.minimize(&fixed, values)?;
         if !outcome.is_success() {
             return Err(FitError::no_minimum(format!("the fit ended without a minimum: {outcome}")));
         }

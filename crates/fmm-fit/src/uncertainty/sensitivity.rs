@@ -23,15 +23,16 @@ use crate::uncertainty::minimum::Minimum;
 /// | exact | [`of`](Self::of) | by central differences of Jᵀ r at constant r | two per parameter, fixed or not |
 /// | first order | [`first_order`](Self::first_order) | left out: right if the residuals are zero | one |
 ///
-/// These are the sensitivity coefficients of JCGM 100:2008, 5.1.3; [`propagate`](Self::propagate) applies them.
-/// Estimates at a bound stay there: their derivatives are zero, and the others are those at the bound. Estimates that
-/// the residuals do not determine have none.
+/// These are the sensitivity coefficients of JCGM 100:2008, 5.1.3;
+/// [`propagated_uncertainty`](Self::propagated_uncertainty) applies them. Estimates at a bound stay there: their
+/// derivatives are zero, and the others are those at the bound. Estimates that the residuals do not determine have
+/// none.
 ///
 /// The fixed values are moved a little, out of their bounds, so the problem has to have values beside them.
 ///
 /// ```
 /// # use fmm_fit::EvaluationError;
-/// use fmm_fit::{Automatic, Model, Options, PropagatedCovariance, Sensitivity, solve};
+/// use fmm_fit::{Automatic, Model, Options, Sensitivity, solve};
 /// use fmm_model::{Bounds, Parameter, Scalar};
 ///
 /// /// Weights F = m g over masses, g to be found and the offset of the scale fixed.
@@ -57,8 +58,8 @@ use crate::uncertainty::minimum::Minimum;
 /// // g = Σ m (F − b) / Σ m²
 /// let coefficient = sensitivity.coefficient_of("gravity", "offset").unwrap();
 /// assert!((coefficient + 6.0 / 14.0).abs() < 1e-9);
-/// let propagated: PropagatedCovariance = sensitivity.propagate_uncorrelated(&[0.01])?;
-/// assert!((propagated.standard_uncertainty(0).unwrap() - 0.01 * 6.0 / 14.0).abs() < 1e-11);
+/// // An offset known to 0.01 N.
+/// assert!((sensitivity.propagated_uncertainty(0, &[0.01]).unwrap() - 0.01 * 6.0 / 14.0).abs() < 1e-11);
 /// assert_eq!(sensitivity.to_string(), "[[sensitivity]]\n  gravity by offset: -0.428571 (m/s²)/N\n");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -114,58 +115,18 @@ impl Sensitivity {
         self.coefficient(index(estimate)?, index(input)?)
     }
 
-    /// Covariance of the estimates that a covariance of the inputs brings about, row by row and in the order of
-    /// [`inputs`](Self::inputs): C V Cᵀ. It comes on top of the covariance of the fit.
+    /// Standard uncertainty that independent standard `uncertainties` of the inputs, in the order of
+    /// [`inputs`](Self::inputs), bring about in the estimate of parameter `estimate`: √Σ (c u)², in its unit.
     ///
-    /// # Errors
-    /// [`FitError::Problem`] for a wrong number of elements and for what is no covariance.
-    pub fn propagate(&self, covariance: &[f64]) -> Result<PropagatedCovariance, FitError> {
-        let count = self.inputs.len();
-        let refuse = |reason| {
-            Err(FitError::problem(format!("the covariance of the inputs {reason}; it needs {count} rows and columns")))
-        };
-        if covariance.len() != count * count {
-            return refuse("has the wrong number of elements");
+    /// It comes on top of that of the fit. `None` for an estimate without coefficients, and for another number of
+    /// uncertainties than inputs.
+    pub fn propagated_uncertainty(&self, estimate: usize, uncertainties: &[f64]) -> Option<f64> {
+        if uncertainties.len() != self.inputs.len() || uncertainties.is_empty() {
+            return None;
         }
-        for i in 0..count {
-            for j in 0..count {
-                let (element, mirrored) = (covariance[i * count + j], covariance[j * count + i]);
-                let product = covariance[i * count + i] * covariance[j * count + j];
-                if !(element.is_finite() && covariance[i * count + i] >= 0.0) {
-                    return refuse("has an element that is not finite or a negative variance");
-                }
-                if element != mirrored {
-                    return refuse("is not symmetric");
-                }
-                // Rounding of a product of two correlation coefficients of one.
-                if element * element > product * (1.0 + 1e-12) {
-                    return refuse("has a correlation coefficient beyond one");
-                }
-            }
-        }
-        let row = |i: usize| &self.coefficients[i * count..(i + 1) * count];
-        Ok(PropagatedCovariance::new(self.parameters.len(), |i, j| {
-            let mut sum = 0.0;
-            for (a, left) in row(i).iter().enumerate() {
-                for (b, right) in row(j).iter().enumerate() {
-                    sum += (*left)? * covariance[a * count + b] * (*right)?;
-                }
-            }
-            (count > 0).then_some(sum)
-        }))
-    }
-
-    /// [`propagate`](Self::propagate) for inputs of these standard uncertainties that are not correlated.
-    ///
-    /// # Errors
-    /// Those of [`propagate`](Self::propagate).
-    pub fn propagate_uncorrelated(&self, uncertainties: &[f64]) -> Result<PropagatedCovariance, FitError> {
-        let count = uncertainties.len();
-        let mut covariance = vec![0.0; count * count];
-        for (i, uncertainty) in uncertainties.iter().enumerate() {
-            covariance[i * count + i] = uncertainty * uncertainty;
-        }
-        self.propagate(&covariance)
+        let parts = self.inputs.iter().zip(uncertainties);
+        let squares = parts.map(|(&input, u)| self.coefficient(estimate, input).map(|c| (c * u).powi(2)));
+        squares.sum::<Option<f64>>().map(f64::sqrt)
     }
 }
 
@@ -193,31 +154,5 @@ fn quotient(of: &Parameter, by: &Parameter) -> String {
     match by.unit() {
         "1" => of.unit().to_owned(),
         unit => format!("{}/{}", enclosed(of.unit()), enclosed(unit)),
-    }
-}
-
-/// Covariance of the estimates of a fit that the uncertainty of its inputs brings about (JCGM 100:2008, 5.2.2, and
-/// JCGM 102:2011, 6.2.1).
-#[derive(Debug, Clone, PartialEq)]
-pub struct PropagatedCovariance {
-    count: usize,
-    elements: Vec<Option<f64>>,
-}
-
-impl PropagatedCovariance {
-    pub(crate) fn new(count: usize, element: impl Fn(usize, usize) -> Option<f64>) -> Self {
-        let elements = (0..count * count).map(|index| element(index / count, index % count)).collect();
-        Self { count, elements }
-    }
-
-    /// Covariance of the estimates of parameters `i` and `j`, in the product of their units; `None` if either is fixed
-    /// or not determined.
-    pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
-        if i < self.count && j < self.count { self.elements[i * self.count + j] } else { None }
-    }
-
-    /// Standard uncertainty of the estimate of parameter `i` from the inputs alone, in its unit.
-    pub fn standard_uncertainty(&self, i: usize) -> Option<f64> {
-        self.covariance(i, i).map(|variance| variance.max(0.0).sqrt())
     }
 }

@@ -1,7 +1,7 @@
 //! Robust and weighted fits of simulated data.
 
 use fmm_fit::{
-    Derivatives, EvaluationError, FitError, Loss, Options, Residuals, Robust, Scale, Weighted, median_deviation, solve,
+    Derivatives, EvaluationError, FitError, Loss, Options, Residuals, Robust, Weighted, median_deviation, solve,
     solve_robust,
 };
 use fmm_model::{Bounds, Parameter};
@@ -89,7 +89,7 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
     for loss in [Loss::SoftL1, Loss::Huber, Loss::Cauchy, Loss::Arctan, Loss::Tukey] {
         let (mut stated, mut held) = ([0; 3], [0; 3]);
         let errors = errors(RUNS, |problem| {
-            let fit = solve_robust(problem, &TRUE, loss, Scale::Estimated, &Options::default()).unwrap();
+            let fit = solve_robust(problem, &TRUE, loss, None, &Options::default()).unwrap();
             for j in 0..3 {
                 if let Some((lower, upper)) = fit.interval(problem.parameters[j].name(), 0.95) {
                     stated[j] += 1;
@@ -115,12 +115,12 @@ fn a_start_far_away_is_no_reason_to_forget_everything() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let problem = decay(60, |_| 0.02 * normal(&mut random));
     for loss in [Loss::Cauchy, Loss::Arctan, Loss::Tukey] {
-        for scale in [Scale::Given(0.1), Scale::Estimated] {
+        for scale in [Some(0.1), None] {
             let fit = solve_robust(&problem, &[5.0, 5.0, 0.2], loss, scale, &Options::default()).unwrap();
             // A few standard uncertainties of 0.005, 0.02 and 0.02.
             assert!((fit.values()[2] - 0.9).abs() < 0.08, "{loss:?}, {scale:?}: {:?}", fit.values());
             assert_eq!(fit.fit().estimates()[0].start(), 5.0);
-            assert!((fit.scale() / 0.1 - 1.0).abs() < 0.6 || scale == Scale::Estimated);
+            assert!((fit.scale() / 0.1 - 1.0).abs() < 0.6 || scale.is_none());
         }
     }
     // The bare problem knows nothing at such a start, and says so.
@@ -138,7 +138,7 @@ fn without_outliers_robust_fits_are_nearly_those_of_least_squares() {
     let problem = decay(2000, |_| 0.02 * normal(&mut random));
     let plain = solve(&problem, &TRUE, &Options::default()).unwrap();
     for loss in [Loss::Squares, Loss::SoftL1, Loss::Huber, Loss::Cauchy, Loss::Arctan, Loss::Tukey] {
-        let robust = solve_robust(&problem, &TRUE, loss, Scale::Estimated, &Options::default()).unwrap();
+        let robust = solve_robust(&problem, &TRUE, loss, None, &Options::default()).unwrap();
         assert!((robust.deviation().unwrap() / 0.02 - 1.0).abs() < 0.1);
         let scale = loss.efficient_scale() * robust.deviation().unwrap();
         assert!((robust.scale() / scale - 1.0).abs() < 1e-6, "{loss:?}: {} instead of {scale}", robust.scale());
@@ -154,7 +154,7 @@ fn bounds_and_fixed_parameters_have_no_uncertainty() {
     let mut problem = decay(60, |_| 0.02 * normal(&mut random));
     problem.parameters[0] = Parameter::new("offset", "a", "1").bounded(Bounds::new(0.6, 1.0).unwrap());
     problem.parameters[1] = Parameter::new("amplitude", "b", "1").bounded(Bounds::new(2.0, 2.0).unwrap());
-    let fit = solve_robust(&problem, &[0.7, 2.0, 1.0], Loss::Huber, Scale::Given(0.03), &Options::default()).unwrap();
+    let fit = solve_robust(&problem, &[0.7, 2.0, 1.0], Loss::Huber, Some(0.03), &Options::default()).unwrap();
     assert_eq!(fit.values()[..2], [0.6, 2.0]);
     assert_eq!((fit.standard_uncertainty(0), fit.standard_uncertainty(1)), (None, None));
     assert!(fit.standard_uncertainty(2).unwrap() > 0.0 && fit.covariance(2, 3).is_none());
@@ -165,7 +165,7 @@ fn bounds_and_fixed_parameters_have_no_uncertainty() {
 fn scales_that_are_none_are_refused() {
     let problem = decay(20, |_| 0.0);
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refused = solve_robust(&problem, &TRUE, Loss::Huber, Scale::Given(scale), &Options::default());
+        let refused = solve_robust(&problem, &TRUE, Loss::Huber, Some(scale), &Options::default());
         assert!(matches!(refused, Err(FitError::OutOfRange { .. })), "scale {scale}");
     }
     // 1.4826 times the third smallest of five, or the middle of the last four.

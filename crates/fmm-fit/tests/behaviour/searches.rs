@@ -1,13 +1,12 @@
 //! Many starts and profile intervals: what they find, and what they say when there is nothing to find.
 
-use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fmm_fit::{
-    EvaluationError, FitError, Minima, MultiStart, Options, Outcome, ProfileEnd, ProfileInterval, Progress,
-    ResidualVariance, Residuals, profile_interval, solve, solve_best, solve_observed,
+    EvaluationError, FitError, MultiStart, Options, Outcome, ProfileEnd, ProfileInterval, Progress, ResidualVariance,
+    Residuals, solve, solve_observed,
 };
 use fmm_model::{Bounds, Parameter};
 
@@ -46,40 +45,36 @@ fn freudenstein_roth(p: &[f64], i: usize) -> f64 {
     if i == 0 { -13.0 + p[0] + ((5.0 - y) * y - 2.0) * y } else { -29.0 + p[0] + ((y + 1.0) * y - 14.0) * y }
 }
 
-/// All that is found, as bits.
-fn signature(found: &Minima) -> Vec<(Vec<u64>, Vec<usize>)> {
-    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
-    found.minima().iter().map(|minimum| (bits(minimum.fit().values()), minimum.starts().to_vec())).collect()
-}
-
 #[test]
-fn both_minima_of_a_textbook_function_are_found() {
-    let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
-    // From the usual start, and from no further than its own size, there is only the local one.
-    assert_eq!(MultiStart::default().solve(&problem, &[0.5, -2.0]).unwrap().minima().len(), 1);
-    let found = MultiStart::default().with_reach(vec![20.0, 10.0]).solve(&problem, &[0.5, -2.0]).unwrap();
-    let [lowest, other] = found.minima() else { panic!("{} minima", found.minima().len()) };
-    assert!((lowest.fit().values()[0] - 5.0).abs() < 1e-9 && (lowest.fit().values()[1] - 4.0).abs() < 1e-9);
-    assert!((other.fit().sum_of_squares() - 48.984_253_679_24).abs() < 1e-9, "S = {}", other.fit().sum_of_squares());
-    assert_eq!(other.starts()[0], 0, "the given start leads to the local minimum");
-    let total = lowest.starts().len() + other.starts().len() + found.failures().len();
-    assert_eq!((total, found.starts()), (64, 64));
-    assert!(lowest.starts().len() > 5, "{} starts led to the lowest", lowest.starts().len());
+fn the_lower_minimum_of_a_textbook_function_is_found() {
+    let problem = problem(&[(-20.0, 20.0), (-12.0, 8.0)], 2, freudenstein_roth);
+    // From the usual start there is only the local one.
+    let local = solve(&problem, &[0.5, -2.0], &Options::default()).unwrap();
+    assert!((local.sum_of_squares() - 48.984_253_679_24).abs() < 1e-9, "S = {}", local.sum_of_squares());
+    let lowest = MultiStart::around(problem.parameters(), &[0.5, -2.0], 31, 0).solve(&problem).unwrap();
+    assert!(
+        (lowest.values()[0] - 5.0).abs() < 1e-9 && (lowest.values()[1] - 4.0).abs() < 1e-9,
+        "{:?}",
+        lowest.values()
+    );
 }
 
 #[test]
 fn equal_seeds_give_equal_bits_on_any_number_of_threads() {
     let problem = problem(&[FREE, (-10.0, 10.0)], 2, freudenstein_roth);
-    let search = MultiStart::default().with_starts(70).with_seed(42);
-    let found = signature(&search.solve(&problem, &[0.5, -2.0]).unwrap());
-    assert_eq!(found, signature(&search.solve(&problem, &[0.5, -2.0]).unwrap()));
-    let other = search.clone().with_seed(43).solve(&problem, &[0.5, -2.0]).unwrap();
-    assert_ne!(found, signature(&other));
+    // Few steps: the ends are as far apart as the starts.
+    let search = |seed: u64| {
+        let options = Options::default().with_max_iterations(2);
+        let search = MultiStart::around(problem.parameters(), &[0.5, -2.0], 69, seed).with_options(options);
+        search.solve(&problem).unwrap().values().iter().map(|value| value.to_bits()).collect::<Vec<_>>()
+    };
+    let found = search(42);
+    assert_eq!(found, search(42));
+    assert_ne!(found, search(43));
     #[cfg(feature = "rayon")]
     for threads in [1, 2, 5] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let parallel = pool.install(|| search.solve_parallel(&problem, &[0.5, -2.0]).unwrap());
-        assert_eq!(found, signature(&parallel), "{threads} threads");
+        assert_eq!(found, pool.install(|| search(42)), "{threads} threads");
     }
 }
 
@@ -90,54 +85,33 @@ fn periods_of_a_wave_are_separate_minima() {
         let t = 0.1 * i as f64;
         p[1] * (p[0] * t).cos() + p[2] * (p[0] * t).sin() - (3.0 * t + 0.4).sin() - 0.01 * ((i * 37 % 11) as f64 - 5.0)
     });
-    let found = MultiStart::default().with_starts(40).solve(&wave, &[1.0, 1.0, 1.0]).unwrap();
-    let frequencies: Vec<f64> = found.minima().iter().map(|minimum| minimum.fit().values()[0]).collect();
-    println!("{frequencies:?}, {:?}", found.failures());
-    assert!((frequencies[0] - 3.0).abs() < 0.01);
-    assert!(found.minima().len() >= 8, "{frequencies:?}");
-    let sums: Vec<f64> = found.minima().iter().map(|minimum| minimum.fit().sum_of_squares()).collect();
-    assert!(sums.is_sorted(), "{sums:?}");
+    let start = [1.0, 1.0, 1.0];
+    let alone = solve(&wave, &start, &Options::default()).unwrap();
+    let found = MultiStart::around(wave.parameters(), &start, 39, 0).solve(&wave).unwrap();
+    assert!((found.values()[0] - 3.0).abs() < 0.01, "{} rad/s", found.values()[0]);
+    assert!(found.sum_of_squares() < 0.1 * alone.sum_of_squares(), "{alone}");
 }
 
 #[test]
-fn a_valley_is_one_minimum() {
-    let product = problem(&[(0.1, 10.0), (0.1, 10.0)], 5, |p, i| p[0] * p[1] - 2.0 + 0.1 * (i as f64 - 2.0));
-    let found = MultiStart::default().solve(&product, &[1.0, 1.0]).unwrap();
-    assert_eq!(found.minima().len(), 1);
-    assert_eq!(found.minima()[0].starts().len(), 64);
-}
-
-#[test]
-fn starts_without_values_are_counted_and_named() {
+fn starts_without_values_are_left_out() {
     // No value in one half, a minimum in the other.
     let half = problem(&[(-1.0, 1.0)], 3, |p, i| if p[0] < 0.0 { f64::NAN } else { p[0] - 0.5 + 0.1 * i as f64 });
-    let search = MultiStart::default().with_kicks(0, 0);
-    let found = search.solve(&half, &[-0.5]).unwrap();
-    assert_eq!((found.starts(), found.minima().len()), (32, 1));
-    assert!((found.best().unwrap().values()[0] - 0.4).abs() < 1e-9);
-    let (number, failure) = &found.failures()[0];
-    assert!(matches!((number, failure), (0, Err(FitError::NoModel { what, .. })) if what.starts_with("residual 0 ")));
-    // A Latin hypercube of 31 has 15 or 16 points on either side.
-    assert!((16..=17).contains(&found.failures().len()), "{} failures", found.failures().len());
+    let search = MultiStart::around(half.parameters(), &[-0.5], 31, 0);
+    assert!((search.solve(&half).unwrap().values()[0] - 0.4).abs() < 1e-9);
 
     let nowhere = problem(&[(-1.0, 1.0)], 3, |_, _| f64::NAN);
-    assert!(matches!(search.solve(&nowhere, &[0.0]), Err(FitError::NoModel { .. })));
-    assert!(
-        matches!(search.solve(&half, &[2.0]), Err(FitError::OutOfRange { what, .. }) if what.contains("outside its bounds"))
-    );
-    let refused = search.with_reach(vec![1.0, 2.0]).solve(&half, &[0.0]);
-    assert!(matches!(refused, Err(FitError::OutOfRange { what, .. }) if what.contains("option reach")));
+    assert!(matches!(search.solve(&nowhere), Err(FitError::NoModel { .. })));
+    let outside = MultiStart::from_starts(vec![vec![2.0]]).solve(&half);
+    assert!(matches!(outside, Err(FitError::OutOfRange { what, .. }) if what.contains("outside its bounds")));
 }
 
 #[test]
 fn a_cancelled_search_keeps_what_it_has() {
-    let flag = Arc::new(AtomicBool::new(true));
-    let options = Options::default().with_cancel_flag(flag);
+    let options = Options::default().with_cancel_flag(Arc::new(AtomicBool::new(true)));
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
-    let found = MultiStart::default().with_options(options).solve(&problem, &[0.5, -2.0]).unwrap();
-    assert_eq!((found.starts(), found.minima().len()), (1, 0));
-    assert!(matches!(found.failures()[..], [(0, Ok(Outcome::Cancelled))]));
-    assert_eq!(found.unfinished().unwrap().values(), [0.5, -2.0]);
+    let search = MultiStart::from_starts(vec![vec![0.5, -2.0]]).with_options(options);
+    let found = search.solve(&problem).unwrap();
+    assert_eq!((found.outcome(), found.values()), (Outcome::Cancelled, &[0.5, -2.0][..]));
 }
 
 /// A straight line with some scatter.
@@ -152,7 +126,7 @@ fn interval<F: Fn(&[f64], usize) -> f64>(
     variance: ResidualVariance,
 ) -> Result<ProfileInterval, FitError> {
     let fit = solve(problem, start, &Options::default()).unwrap();
-    profile_interval(problem, &fit, name, 0.95, variance, &Options::default())
+    ProfileInterval::of(problem, &fit, name, 0.95, variance, &Options::default())
 }
 
 #[test]
@@ -182,7 +156,7 @@ fn a_straight_line_has_a_parabola_of_any_variance() {
     let options = Options::default();
     let fit = solve(&line, &[0.0, 0.0], &options).unwrap();
     let variance = ResidualVariance::Effective { variance: 0.25, degrees_of_freedom: 5.0 };
-    let found = profile_interval(&line, &fit, "p1", 0.95, variance, &options).unwrap();
+    let found = ProfileInterval::of(&line, &fit, "p1", 0.95, variance, &options).unwrap();
     let (best, unit) = (fit.values()[1], fit.unit_covariance(1, 1).unwrap());
     // Student's quantile for 5 degrees of freedom.
     let reach = 2.570_581_836 * 0.5 * unit.sqrt();
@@ -198,7 +172,7 @@ fn a_straight_line_has_a_parabola_of_any_variance() {
     }
     for variance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let variance = ResidualVariance::Effective { variance, degrees_of_freedom: 5.0 };
-        let refused = profile_interval(&line, &fit, "p1", 0.95, variance, &options);
+        let refused = ProfileInterval::of(&line, &fit, "p1", 0.95, variance, &options);
         assert!(matches!(refused, Err(FitError::Undetermined { .. })), "{refused:?}");
     }
 }
@@ -212,7 +186,7 @@ fn a_curve_goes_as_far_as_its_interval() {
     for (bounds, end) in [(FREE, None), ((0.0, 5.0), Some(5.0))] {
         let rise = problem(&[FREE, bounds], 5, rise);
         let fit = solve(&rise, &[1.0, 1.0], &options).unwrap();
-        let found = profile_interval(&rise, &fit, "p1", 0.95, ResidualVariance::Estimated, &options).unwrap();
+        let found = ProfileInterval::of(&rise, &fit, "p1", 0.95, ResidualVariance::Estimated, &options).unwrap();
         let curve = found.curve(&rise, &fit, 5, &options).unwrap();
         let (first, last) = (curve[0], curve[10]);
         assert!(first.0 < found.lower().value().unwrap() && first.1 > found.threshold());
@@ -228,7 +202,7 @@ fn a_limit_on_evaluations_holds_for_a_whole_interval() {
     let fit = solve(&line, &[0.0, 0.0], &Options::default()).unwrap();
     let ask = |most: usize| {
         let options = Options::default().with_max_evaluations(most);
-        profile_interval(&line, &fit, "p1", 0.95, ResidualVariance::Estimated, &options)
+        ProfileInterval::of(&line, &fit, "p1", 0.95, ResidualVariance::Estimated, &options)
     };
     let all = ask(usize::MAX).unwrap().residual_evaluations();
     // Half of them end within one of the fits.
@@ -288,12 +262,12 @@ fn a_lower_minimum_on_the_way_is_an_error_that_leads_there() {
     let wells = problem(&[FREE], 2, |p, i| if i == 0 { p[0] * p[0] - 1.0 } else { 0.1 * (p[0] - 1.0) });
     let fit = solve(&wells, &[-2.0], &Options::default()).unwrap();
     assert!((fit.sum_of_squares() - 0.04).abs() < 1e-3, "S = {}", fit.sum_of_squares());
-    let found = profile_interval(&wells, &fit, "p0", 0.95, ResidualVariance::Unit, &Options::default());
+    let found = ProfileInterval::of(&wells, &fit, "p0", 0.95, ResidualVariance::Unit, &Options::default());
     let Err(FitError::LowerMinimum { values, lower, .. }) = found else { panic!("{found:?}") };
     assert!((values[0] - 1.0).abs() < 1e-9 && lower < 1e-18, "{values:?}");
     // From there the two wells are one interval.
     let fit = solve(&wells, &values, &Options::default()).unwrap();
-    let found = profile_interval(&wells, &fit, "p0", 0.95, ResidualVariance::Unit, &Options::default()).unwrap();
+    let found = ProfileInterval::of(&wells, &fit, "p0", 0.95, ResidualVariance::Unit, &Options::default()).unwrap();
     for (end, sign) in [(found.lower(), -1.0), (found.upper(), 1.0)] {
         let at = end.value().unwrap();
         let square = (at * at - 1.0).powi(2) + 0.01 * (at - 1.0).powi(2);
@@ -307,37 +281,39 @@ fn what_is_no_question_for_a_profile_is_refused() {
     let variance = ResidualVariance::Estimated;
     let straight = problem(&[FREE, FREE], 20, line);
     let fit = solve(&straight, &[0.0, 0.0], &options).unwrap();
-    let ask = |name: &str, level: f64| profile_interval(&straight, &fit, name, level, variance, &options).unwrap_err();
+    let ask =
+        |name: &str, level: f64| ProfileInterval::of(&straight, &fit, name, level, variance, &options).unwrap_err();
     assert_eq!(ask("mass", 0.95).to_string(), "there is no parameter called mass");
     assert!(matches!(ask("p0", 1.0), FitError::OutOfRange { .. }));
     assert!(matches!(ask("p0", f64::NAN), FitError::OutOfRange { .. }));
     let fixed = problem(&[(2.0, 2.0), FREE], 20, line);
     assert!(matches!(interval(&fixed, &[2.0, 0.0], "p0", variance), Err(FitError::Problem { .. })));
     let other = problem(&[FREE, FREE], 19, line);
-    let refused = profile_interval(&other, &fit, "p0", 0.95, variance, &options);
+    let refused = ProfileInterval::of(&other, &fit, "p0", 0.95, variance, &options);
     assert!(matches!(refused, Err(FitError::OtherFit { .. })));
     let exact = problem(&[FREE, FREE], 2, line);
     assert!(matches!(interval(&exact, &[0.0, 0.0], "p0", variance), Err(FitError::Undetermined { .. })));
     let stopped = solve(&straight, &[0.0, 0.0], &Options::default().with_max_iterations(0)).unwrap();
-    let refused = profile_interval(&straight, &stopped, "p0", 0.95, variance, &options);
+    let refused = ProfileInterval::of(&straight, &stopped, "p0", 0.95, variance, &options);
     assert!(matches!(&refused, Err(FitError::NoMinimum { what }) if what.contains("not at a minimum")));
-    let refused = profile_interval(&straight, &fit, "p0", 0.95, variance, &Options::default().with_max_iterations(0));
+    let refused =
+        ProfileInterval::of(&straight, &fit, "p0", 0.95, variance, &Options::default().with_max_iterations(0));
     assert!(matches!(&refused, Err(FitError::NoMinimum { what }) if what.contains("fixed at")), "{refused:?}");
 }
 
 #[test]
-fn limits_of_one_fit_hold_for_all_of_a_search() {
-    let calls = Cell::new(0);
+fn a_limit_on_time_holds_for_all_of_a_search() {
+    let calls = AtomicUsize::new(0);
     let slow = problem(&[FREE, FREE], 2, |p, i| {
-        calls.set(calls.get() + 1);
+        calls.fetch_add(1, Ordering::Relaxed);
         std::thread::sleep(std::time::Duration::from_millis(1));
         freudenstein_roth(p, i)
     });
     let options = Options::default().with_time_limit(std::time::Duration::from_millis(100));
-    let found = MultiStart::default().with_options(options).solve(&slow, &[0.5, -2.0]).unwrap();
-    // 64 fits of some 60 calls take 4 s; a batch that has begun may run over by one step per start.
-    assert!(calls.get() < 1000, "{} calls", calls.get());
-    assert!(found.starts() < 64 && found.starts() >= 1);
+    let search = MultiStart::around(slow.parameters(), &[0.5, -2.0], 7, 0).with_options(options);
+    assert_eq!(search.solve(&slow).unwrap().outcome(), Outcome::TimedOut);
+    // Without the limit all fits take some 200 ms; one step of each may run over it.
+    assert!(calls.load(Ordering::Relaxed) < 1000, "{calls:?} calls");
 }
 
 /// The lower of two minima is found, and with far fewer steps than all fits take: those that lead to the higher one are
@@ -351,7 +327,7 @@ fn of_several_starts_the_best_is_finished() {
         steps += 1;
         ControlFlow::Continue(())
     };
-    let best = solve_best(&problem, &starts, &Options::default(), &mut count).unwrap();
+    let best = MultiStart::from_starts(starts.clone()).solve_observed(&problem, &mut count).unwrap();
     assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
     let mut all = 0;
     for start in &starts {
@@ -362,10 +338,7 @@ fn of_several_starts_the_best_is_finished() {
         solve_observed(&problem, start, &Options::default(), count).unwrap();
     }
     assert!(2 * steps < all, "{steps} steps in place of {all}");
-    assert!(matches!(
-        solve_best(&problem, &[], &Options::default(), |_| ControlFlow::Continue(())),
-        Err(FitError::NotStarted)
-    ));
+    assert!(matches!(MultiStart::from_starts(vec![]).solve(&problem), Err(FitError::NotStarted)));
 }
 
 /// At first the fit that leads to the lower minimum is far behind the one that is at the other: half of the fits are
@@ -374,7 +347,7 @@ fn of_several_starts_the_best_is_finished() {
 fn a_fit_of_the_better_half_may_overtake_the_best() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
     let starts = [vec![5.0, 60.0], vec![5.0, 600.0], vec![5.0, 2000.0], vec![11.4, -0.9]];
-    let best = solve_best(&problem, &starts, &Options::default(), |_| ControlFlow::Continue(())).unwrap();
+    let best = MultiStart::from_starts(starts.to_vec()).solve(&problem).unwrap();
     assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
 }
 
@@ -391,7 +364,7 @@ fn fits_that_meet_go_on_as_one() {
             steps += 1;
             ControlFlow::Continue(())
         };
-        solve_best(&noisy, starts, &Options::default(), count).unwrap();
+        MultiStart::from_starts(starts.to_vec()).solve_observed(&noisy, count).unwrap();
         steps
     };
     let start = vec![2.8, 1.0, 1.0];
@@ -407,7 +380,7 @@ fn the_room_of_fits_that_meet_goes_to_others() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
     let mut starts = vec![vec![11.412_779, -0.896_805]; 3];
     starts.extend([vec![-50.0, -5.0], vec![5.0, 2000.0]]);
-    let best = solve_best(&problem, &starts, &Options::default(), |_| ControlFlow::Continue(())).unwrap();
+    let best = MultiStart::from_starts(starts.to_vec()).solve(&problem).unwrap();
     assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
 }
 
@@ -421,7 +394,7 @@ fn an_observer_ends_all_fits() {
         steps += 1;
         if steps < 8 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
-    let best = solve_best(&problem, &starts, &Options::default(), few).unwrap();
+    let best = MultiStart::from_starts(starts.to_vec()).solve_observed(&problem, few).unwrap();
     assert_eq!(steps, 8);
     let at = |start: &[f64]| freudenstein_roth(start, 0).powi(2) + freudenstein_roth(start, 1).powi(2);
     assert!(starts.iter().all(|start| best.sum_of_squares() <= at(start)));

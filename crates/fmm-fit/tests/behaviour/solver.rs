@@ -9,8 +9,8 @@ use std::time::Duration;
 use argmin::core::observers::{Observe, ObserverMode};
 use argmin::core::{Executor, KV, State};
 use fmm_fit::{
-    BoundedLevenbergMarquardt, Derivatives, EstimateStatus, EvaluationError, FitError, Minimizer, NonFinite, Options,
-    Outcome, Residuals, f_test, solve, solve_observed,
+    BoundedLevenbergMarquardt, Derivatives, EstimateStatus, EvaluationError, FTest, FitError, Minimizer, NonFinite,
+    Options, Outcome, Residuals, solve, solve_observed,
 };
 use fmm_model::{Bounds, Parameter};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -110,7 +110,10 @@ fn a_region_without_values_is_avoided() {
     assert_eq!(fit.outcome(), Outcome::NonFinite);
     assert!((fit.values()[0] - 1.0).abs() < 1e-6, "value {}", fit.values()[0]);
     assert!(matches!(fit.non_finite(), Some(NonFinite::Residual { index: 0, value }) if value.is_nan()));
-    assert!(fit.to_string().contains("what had no finite value beyond them: residual 0 is NaN"), "{fit}");
+    assert!(
+        fit.to_string().contains("some trial points had no finite value; at the last of them residual 0 is NaN"),
+        "{fit}"
+    );
 }
 
 /// A decay whose derivative by the rate, or one of whose residuals, has no value beyond a rate of `edge`.
@@ -428,7 +431,7 @@ fn a_further_parameter_is_tested() {
     let full = solve(&problem(&[FREE; 3], 50, offset), &[1.0, 1.0, 0.1], &Options::default()).unwrap();
     let restricted =
         solve(&problem(&[FREE, FREE, (0.0, 0.0)], 50, offset), &[1.0, 1.0, 0.0], &Options::default()).unwrap();
-    let test = f_test(&restricted, &full).unwrap();
+    let test = FTest::of(&restricted, &full).unwrap();
     assert_eq!(test.degrees_of_freedom, (1, 47));
     // For one parameter F is nearly the square of Student's t; the model is not quite linear.
     let estimate = &full.estimates()[2];
@@ -439,7 +442,7 @@ fn a_further_parameter_is_tested() {
     let expected = 2.0 * student.sf(test.f.sqrt());
     assert!((test.p_value / expected - 1.0).abs() < 1e-9, "p = {} instead of {expected}", test.p_value);
     assert!(restricted.corrected_akaike().unwrap().is_finite());
-    assert!(matches!(f_test(&full, &restricted), Err(FitError::Undetermined { .. })));
+    assert!(matches!(FTest::of(&full, &restricted), Err(FitError::Undetermined { .. })));
 }
 
 #[test]

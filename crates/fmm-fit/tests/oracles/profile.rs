@@ -1,6 +1,6 @@
 //! Profile intervals of NIST's sets, which others have computed too.
 
-use fmm_fit::{Options, ProfileEnd, ResidualVariance, profile_interval, solve};
+use fmm_fit::{Options, ProfileEnd, ProfileInterval, ResidualVariance, solve};
 use serde_json::Value;
 
 use crate::harness::{FormulaProblem, digits, numbers, parameters};
@@ -24,7 +24,7 @@ fn intervals_agree_with_the_reference() {
             // The second is that of one standard deviation of a normal distribution, erf(1/√2).
             for (label, level) in [("0.9500", 0.95), ("0.6827", 0.682_689_492_137_085_9)] {
                 let variance = ResidualVariance::Estimated;
-                let found = profile_interval(&problem, &fit, &parameter, level, variance, &Options::default());
+                let found = ProfileInterval::of(&problem, &fit, &parameter, level, variance, &Options::default());
                 let found = found.unwrap_or_else(|error| panic!("{name} {parameter}: {error}"));
                 for (end, reference) in
                     [found.lower(), found.upper()].into_iter().zip(interval[label].as_array().unwrap())

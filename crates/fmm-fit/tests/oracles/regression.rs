@@ -56,8 +56,7 @@ fn certified_values_to_the_last_digits() {
                 agreement(&LinearRegression::fit(&named, &y, Weighting::Equal).unwrap(), set)
             }
             "x (no intercept)" => {
-                let line = Polynomial::fit_through_origin(&column(0), &y, 1, Weighting::Equal).unwrap();
-                agreement(line.regression(), set)
+                agreement(&LinearRegression::fit(&[("slope", &column(0))], &y, Weighting::Equal).unwrap(), set)
             }
             _ => agreement(Polynomial::fit(&column(0), &y, count - 1, Weighting::Equal).unwrap().regression(), set),
         };

@@ -1,6 +1,6 @@
 //! Robust fits that others computed.
 
-use fmm_fit::{BoundedLevenbergMarquardt, Loss, Options, Residuals, Robust, Scale, solve, solve_robust};
+use fmm_fit::{BoundedLevenbergMarquardt, Loss, Options, Residuals, Robust, solve, solve_robust};
 use fmm_model::Scalar;
 use serde_json::Value;
 
@@ -47,7 +47,7 @@ fn all_losses_reach_their_minimum() {
         for (is_exact, wanted) in [(true, 12.0), (false, 9.0)] {
             let problem = problem(&file, is_exact);
             let scale = number(&file["scale"]);
-            let fit = solve_robust(&problem, &start, loss, Scale::Given(scale), &Options::default()).unwrap();
+            let fit = solve_robust(&problem, &start, loss, Some(scale), &Options::default()).unwrap();
             let cost = if loss == Loss::Squares { fit.fit().sum_of_squares() / 2.0 } else { fit.cost() };
             let values = digits(fit.values(), &reference);
             let of_cost = digits(&[cost], &[number(&solution["cost"])]);
@@ -75,7 +75,7 @@ fn outliers_are_found_and_count_little() {
     let problem = problem(&file, true);
     let start = numbers(&file["x0"]);
     for (name, loss) in LOSSES.into_iter().skip(1) {
-        for scale in [Scale::Given(0.05), Scale::Estimated] {
+        for scale in [Some(0.05), None] {
             let fit = solve_robust(&problem, &start, loss, scale, &Options::default()).unwrap();
             println!("{name}: {:?}, scale {}, {:?}", fit.values(), fit.scale(), fit.outliers());
             assert_eq!(fit.outliers(), [4, 11, 23, 37, 52], "{name}");

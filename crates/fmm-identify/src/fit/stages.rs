@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use fmm_fit::{Fit, FitError, Options, Outcome, Progress, Residuals, solve_best, solve_observed};
+use fmm_fit::{Fit, FitError, MultiStart, Options, Outcome, Progress, Residuals, solve_observed};
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
@@ -354,7 +354,9 @@ fn fit_of_best(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    solve_best(problem, starts, options, |progress| observer(progress))
+    let search = MultiStart::from_starts(starts.to_vec()).with_options(options.clone());
+    search
+        .solve_observed(problem, |progress| observer(progress))
         .map_err(|source| IdentifyError::Fit { law: problem.name(), source })
 }
 

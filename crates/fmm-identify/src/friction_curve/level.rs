@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt;
 
-use fmm_fit::f_tail;
+use fmm_fit::FTest;
 use fmm_model::Rounded;
 
 use crate::friction_curve::mixture::moments;
@@ -164,7 +164,7 @@ fn gathered(parts: &[(f64, f64, f64)]) -> Vec<(f64, f64, f64)> {
 
 /// Probability that Student's t with `freedom` exceeds `t`.
 fn upper_tail(t: f64, freedom: f64) -> f64 {
-    let tail = 0.5 * f_tail(t * t, 1.0, freedom).unwrap_or(1.0);
+    let tail = 0.5 * FTest::tail(t * t, 1.0, freedom).unwrap_or(1.0);
     if t < 0.0 { 1.0 - tail } else { tail }
 }
 

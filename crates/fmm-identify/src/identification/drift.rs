@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use fmm_fit::f_tail;
+use fmm_fit::FTest;
 
 use crate::experiment::Experiment;
 use crate::experiment::nuisance::{DRIFT, Nuisance};
@@ -64,7 +64,7 @@ pub(crate) fn with_drift(
         let left = (found.fit().sum_of_squares() - slow).max(0.0) / found.fit().residuals().len() as f64;
         let drifts = above > 0.0
             && left.sqrt() < NEAR_NOISE * found.structure.noise
-            && f_tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE_OF_DRIFT);
+            && FTest::tail(ratio, degrees, controls).is_some_and(|p| p < CHANCE_OF_DRIFT);
         any |= drifts;
         drifting.push(if drifts { decay.clone().beside(DRIFT.to_vec()) } else { decay.clone() });
     }

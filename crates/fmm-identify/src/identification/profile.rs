@@ -1,6 +1,6 @@
 //! Profiles of the fitted quantities: how far value ± k u is the truth about each.
 
-use fmm_fit::{EstimateStatus, FitError, Options, ProfileEnd, ProfileInterval, ResidualVariance, profile_interval};
+use fmm_fit::{EstimateStatus, FitError, Options, ProfileEnd, ProfileInterval, ResidualVariance};
 use fmm_model::Parameter;
 
 use crate::error::IdentifyError;
@@ -171,7 +171,7 @@ impl Identification {
         let residuals =
             ResidualVariance::Effective { variance: variance / plain * deviation * deviation, degrees_of_freedom };
         let left = |used: usize| Options::default().with_max_evaluations(MOST_EVALUATIONS.saturating_sub(used));
-        let interval = profile_interval(problem, fit, estimate.name(), level, residuals, &left(*evaluations))?;
+        let interval = ProfileInterval::of(problem, fit, estimate.name(), level, residuals, &left(*evaluations))?;
         *evaluations += interval.residual_evaluations();
         let parameter = estimate.parameter().clone();
         let mut profile = Profile { parameter, value: estimate.value(), variance, interval, curve: Vec::new() };

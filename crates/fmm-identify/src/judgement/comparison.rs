@@ -259,6 +259,16 @@ impl Comparison {
 
     /// Change of the friction during the records that the preferred law leaves out; `None` where it has one, or the
     /// records do not tell.
+    ///
+    /// ```no_run
+    /// # fn of(comparison: &fmm_identify::Comparison) {
+    /// use fmm_identify::FrictionChange;
+    ///
+    /// if let Some(change) = comparison.friction_change().filter(FrictionChange::is_shown) {
+    ///     println!("{:.2} % with each half cycle", 100.0 * change.per_half_cycle);
+    /// }
+    /// # }
+    /// ```
     pub fn friction_change(&self) -> Option<FrictionChange> {
         self.change
     }

@@ -28,8 +28,8 @@ type Observer<'a> = dyn FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send + '
 /// default options of an [`Inquiry`].
 ///
 /// Standard uncertainties take the residuals as independent if they look like noise. If the law misses something, so
-/// that neighbouring residuals are alike, they come from [`CorrelatedCovariance`](fmm_fit::CorrelatedCovariance) where
-/// that gives more, and a warning says so; the [`Fit`](fmm_fit::Fit) keeps those of independent residuals.
+/// that neighbouring residuals are alike, they come from the correlation of the residuals where that gives more, and a
+/// warning says so; the [`Fit`](fmm_fit::Fit) keeps those of independent residuals.
 ///
 /// The law explains all dissipation that `machine` does not claim as its own known damping. Start values come
 /// from the records; the fit starts from each hypothesis that the amplitudes allow and keeps the best end.

@@ -15,7 +15,7 @@ pub use friction_over_load::FrictionOverLoad;
 pub use inquiry::{Inquiry, compare, identify, search};
 pub use score_test::ScoreTest;
 
-use fmm_fit::f_tail;
+use fmm_fit::FTest;
 
 use crate::candidate::Candidate;
 use crate::finding::Finding;
@@ -95,7 +95,7 @@ impl Judgement {
             let (misfit, freedom) = found.misfit_beside(best);
             let further = best.fit().rank().saturating_sub(found.fit().rank()).max(1) as f64;
             // A misfit without a probability excludes no law.
-            let p = (f_tail(misfit / further, further, freedom).unwrap_or(1.0) * best.leap_positions()).min(1.0);
+            let p = (FTest::tail(misfit / further, further, freedom).unwrap_or(1.0) * best.leap_positions()).min(1.0);
             (misfit, if misfit > 0.0 { p } else { 1.0 })
         });
         let (misfits, p_values): (Vec<f64>, Vec<f64>) = standings.unzip();

@@ -1,12 +1,13 @@
 //! Section 7.3: one coefficient while the speed grows, another while it falls, Figs 21 and 22.
 
-use fmm_fit::{MultiStart, Options, Residuals};
+use fmm_fit::{Options, Residuals};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb};
 use fmm_model::Oscillator;
 use fmm_record::Record;
 use fmm_sim::{Engine, Event, Exact, Mode, Sampling, Thesis};
 
 use super::{Known, LOAD_4, LOAD_5, Release, fit_panels, largest, seed, value};
+use crate::kicks::Kicks;
 use crate::printed::TABLE_5;
 use crate::ring_down::{INTERVAL, Viscous};
 use crate::{Chapter, Criterion, Found, Settings, Target};
@@ -47,15 +48,11 @@ fn by_thesis(record: &Record, load: f64, viscous: Viscous, settings: &Settings<'
         name if names.contains(&name) => 0.01,
         _ => 0.0,
     });
-    let search = MultiStart::default()
-        .with_starts(1)
-        .with_kicks(3, 16)
-        .with_seed(settings.seed())
-        .with_reach(reach.collect())
-        .with_options(Options::default().with_restarts(0).with_polish_steps(0));
-    let minima = search.solve(&problem, problem.values())?;
-    let best = minima.best().or(minima.unfinished()).ok_or("no fit came to an end")?;
-    Ok([value(best, names[0])?, value(best, names[1])?])
+    let reach: Vec<f64> = reach.collect();
+    let kicks = Kicks { rounds: 3, count: 16, seed: settings.seed() };
+    let options = Options::default().with_restarts(0).with_polish_steps(0);
+    let best = kicks.lowest(&problem, problem.values(), &reach, options)?;
+    Ok([value(&best, names[0])?, value(&best, names[1])?])
 }
 
 /// A truth, what is fitted to it and how.

@@ -1,6 +1,6 @@
 //! Eq. 7.2 and Fig. 20: a power law through Table 4, regressed on the printed digits.
 
-use fmm_fit::{Bounds, Dual, Fit, Options, Parameter, Scalar, curve, f_test, solve};
+use fmm_fit::{Bounds, Dual, FTest, Fit, Options, Parameter, Scalar, curve, solve};
 
 use super::largest;
 use crate::printed::{EQUATION_7_2, TABLE_4};
@@ -145,7 +145,7 @@ fn table(chapter: &mut Chapter, linear: &Column, mean: &Column) {
 }
 
 fn finding(chapter: &mut Chapter, linear: &Column, mean: &Column) -> Found<()> {
-    let test = f_test(mean.without_offset.as_fit(), mean.free.as_fit())?;
+    let test = FTest::of(mean.without_offset.as_fit(), mean.free.as_fit())?;
     let share = |j: usize| -> Found<f64> {
         let uncertainty = mean.free.standard_uncertainty(j).ok_or("a coefficient is not determined")?;
         Ok(100.0 * uncertainty / mean.free.as_fit().values()[j].abs())

@@ -3,12 +3,13 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use fmm_fit::{Estimate, Fit, MultiStart, Options, Refit, Residuals, WithFixed};
+use fmm_fit::{Estimate, Fit, Options, Refit, Residuals, WithFixed};
 use fmm_sim::Thesis;
 use fmm_uq::{MonteCarlo, OutputSample};
 
 use super::{Problem, ROWS, VARIED, inputs, problem};
 use crate::Found;
+use crate::kicks::Kicks;
 use crate::printed::MACHINE_DEVIATIONS;
 
 /// One row by Monte Carlo.
@@ -63,10 +64,8 @@ fn euler_fit(problem: &Problem, kicks: usize, values: &[f64]) -> Found<Vec<f64>>
     // A search that ends at a jump does not get further with another radius, but from another start.
     let options =
         Options::default().with_restarts(0).with_polish_steps(0).with_cost_tolerance(1e-9).with_step_tolerance(1e-8);
-    let search =
-        MultiStart::default().with_starts(1).with_kicks(1, kicks).with_reach(reach.collect()).with_options(options);
-    let minima = search.solve(&held, &start)?;
-    let best = minima.best().or(minima.unfinished()).ok_or("no fit came to an end")?;
+    let kicks = Kicks { rounds: 1, count: kicks, seed: 0 };
+    let best = kicks.lowest(&held, &start, &reach.collect::<Vec<f64>>(), options)?;
     let found = |name| best.estimate(name).map(Estimate::value).ok_or("no such parameter");
     Ok(vec![found("coefficient")?, found("initial_position")?])
 }
