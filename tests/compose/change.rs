@@ -37,9 +37,10 @@ fn a_change_is_named_and_the_level_is_that_in_the_mean_over_the_path() {
     assert!(change.value() < 0.0 && distance(change, -0.002) < 2.5, "{wear}");
     // 0.25 at first, less 0.2 % with each of twenty half cycles of which the first are the longest.
     assert!(distance(finding(&wear, "mu"), 0.2465) < 2.5, "{wear}");
-    for (name, mass, load, mu) in
-        [("load_over_time_5", 1.6927312, 0.528108619, 0.2623), ("load_over_time_9", 10.1948623, 6.46498619, 0.1102)]
-    {
+    for (name, mass, load, mu) in [
+        ("load_over_time_5", 1.692_731_2, 0.528_108_619, 0.2623),
+        ("load_over_time_9", 10.194_862_3, 6.464_986_19, 0.1102),
+    ] {
         let found = searched(name, &machine(mass, load));
         assert!(finding(&found, "friction_change_per_half_cycle").value() > 0.0, "{found}");
         assert!(distance(finding(&found, "mu"), mu) < 2.5, "{found}");
@@ -51,7 +52,7 @@ fn a_change_is_named_and_the_level_is_that_in_the_mean_over_the_path() {
 /// covers the truth.
 #[test]
 fn a_change_that_does_not_show_has_its_price_in_the_headline() {
-    let found = searched("wear_1_percent", &machine(2.24477056, 2.32916536));
+    let found = searched("wear_1_percent", &machine(2.244_770_56, 2.329_165_36));
     let change = found.friction_change().unwrap();
     assert!(!change.is_shown() && change.largest_unseen() > 0.01, "{change:?}");
     let mu = finding(&found, "mu");
@@ -66,8 +67,8 @@ fn a_change_that_does_not_show_has_its_price_in_the_headline() {
 /// The damping of the machine, known from a run without contact, tells them apart.
 #[test]
 fn a_known_damping_shows_the_change() {
-    let damping = Known::new(0.1262 * 2.24477056, 1e-4).unwrap();
-    let found = searched("wear_1_percent", &machine(2.24477056, 2.32916536).with_damping(damping).unwrap());
+    let damping = Known::new(0.1262 * 2.244_770_56, 1e-4).unwrap();
+    let found = searched("wear_1_percent", &machine(2.244_770_56, 2.329_165_36).with_damping(damping).unwrap());
     assert!(found.preferred().law().ends_with("+ change"), "{found}");
     let change = finding(&found, "friction_change_per_half_cycle");
     assert!(distance(change, -0.01) < 2.5 && change.uncertainty().unwrap() < 0.002, "{found}");
@@ -77,7 +78,7 @@ fn a_known_damping_shows_the_change() {
 /// A statement of how steady the friction is enters the uncertainty, with a share of its own.
 #[test]
 fn declared_steadiness_is_in_the_uncertainty() {
-    let known = machine(2.24477056, 2.32916536).with_steady_friction(0.01).unwrap();
+    let known = machine(2.244_770_56, 2.329_165_36).with_steady_friction(0.01).unwrap();
     let found = searched("wear_1_percent", &known);
     let mu = finding(&found, "mu");
     let budget = mu.budget().unwrap();
@@ -90,7 +91,7 @@ fn declared_steadiness_is_in_the_uncertainty() {
 /// Friction that is steady is taken for it.
 #[test]
 fn steady_friction_shows_no_change() {
-    let found = searched("control", &machine(11.8051577, 14.7136915));
+    let found = searched("control", &machine(11.805_157_7, 14.713_691_5));
     let change = found.friction_change().unwrap();
     assert!(!change.is_shown() && change.uncertainty < 1e-3, "{change:?}");
     assert!(found.not_excluded().all(|law| !law.law().contains("change")), "{found}");

@@ -83,16 +83,12 @@ impl Layer {
     fn plot(&self) -> Plot {
         let (color, width) = self.role.style();
         let (points, label) = (self.points.clone(), self.label.as_str());
-        match width {
-            Some(width) => {
-                let line = LinePlot::new().with_data(points).with_color(color).with_stroke_width(width);
-                Plot::Line(if label.is_empty() { line } else { line.with_legend(label) })
-            }
-            None => {
-                let dots = ScatterPlot::new().with_data(points).with_color(color).with_size(3.5);
-                Plot::Scatter(if label.is_empty() { dots } else { dots.with_legend(label) })
-            }
+        if let Some(width) = width {
+            let line = LinePlot::new().with_data(points).with_color(color).with_stroke_width(width);
+            return Plot::Line(if label.is_empty() { line } else { line.with_legend(label) });
         }
+        let dots = ScatterPlot::new().with_data(points).with_color(color).with_size(3.5);
+        Plot::Scatter(if label.is_empty() { dots } else { dots.with_legend(label) })
     }
 }
 

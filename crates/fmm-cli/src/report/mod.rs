@@ -103,8 +103,8 @@ fn friction_curve(found: &Found) -> String {
         None => return String::new(),
         Some(Err(reason)) => format!("<p>It cannot be had: {}.</p>\n", escaped(reason)),
         Some(Ok(curve)) => {
-            let limits: String = curve.limits().iter().map(|limit| format!("; {limit}")).collect();
-            let text = format!("<p>{}{}.</p>\n", escaped(&curve.headline()), escaped(&limits));
+            let sentences = std::iter::once(curve.headline()).chain(curve.limits().iter().map(ToString::to_string));
+            let text = format!("<p>{}.</p>\n", escaped(&sentences.collect::<Vec<_>>().join("; ")));
             let caption = "Grey: friction over the speed, no law assumed, with its 95 % intervals at each speed. Dark: \
                            95 % intervals for the whole curve. Red: the preferred law.";
             found

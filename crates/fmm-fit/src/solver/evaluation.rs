@@ -99,7 +99,7 @@ impl Evaluator {
     /// An evaluator of `problem` within its bounds, about `values`.
     pub(crate) fn of<P: Residuals + ?Sized>(problem: &P, values: &[f64]) -> Result<Self, FitError> {
         let mut evaluator = Self::default();
-        let bounds = problem.parameters().iter().map(|parameter| parameter.bounds());
+        let bounds = problem.parameters().iter().map(fmm_model::Parameter::bounds);
         evaluator.begin(problem, bounds.map(|bounds| (bounds.lower(), bounds.upper())), values)?;
         Ok(evaluator)
     }

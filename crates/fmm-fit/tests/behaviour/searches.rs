@@ -380,7 +380,7 @@ fn the_room_of_fits_that_meet_goes_to_others() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
     let mut starts = vec![vec![11.412_779, -0.896_805]; 3];
     starts.extend([vec![-50.0, -5.0], vec![5.0, 2000.0]]);
-    let best = MultiStart::from_starts(starts.to_vec()).solve(&problem).unwrap();
+    let best = MultiStart::from_starts(starts.clone()).solve(&problem).unwrap();
     assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
 }
 

@@ -76,7 +76,7 @@ impl CurveFit {
         if let Some(thinned) = problem.thinned() {
             values = Settled::of(&problem.with_records(&thinned), values, scale)?.values;
         }
-        let Settled { values, near, likelihood, posterior, is_settled } = Settled::of(problem, values, scale)?;
+        let Settled { values, near, likelihood, posterior, has_ended } = Settled::of(problem, values, scale)?;
         let path = Path::of(problem, &values).map_err(failure)?;
         let residual = (near.sum_of_squares() / problem.len() as f64).sqrt();
         let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
@@ -91,7 +91,7 @@ impl CurveFit {
             path: path.weights(top),
             slowest: path.slowest,
             excess: (ratio > EXCESS && is_correlated).then_some(ratio),
-            is_settled,
+            is_settled: has_ended,
         })
     }
 }
@@ -103,7 +103,7 @@ struct Settled {
     likelihood: Likelihood,
     posterior: Posterior,
     /// The mean of the posterior is the curve about which it was linearised.
-    is_settled: bool,
+    has_ended: bool,
 }
 
 impl Settled {
@@ -121,20 +121,20 @@ impl Settled {
                 let deviations = posterior.deviations();
                 step.iter().zip(deviations).all(|(step, deviation)| step.abs() <= SETTLED * scale * deviation)
             };
-            let mut is_settled = is_near(&posterior);
-            if is_settled && noise.is_none() {
+            let mut has_ended = is_near(&posterior);
+            if has_ended && noise.is_none() {
                 noise = near.noise(problem, &values);
                 if noise.is_some() {
                     (likelihood, posterior) = near.posterior(problem, &values, scale, &prior, noise.as_ref())?;
-                    is_settled = is_near(&posterior);
+                    has_ended = is_near(&posterior);
                 }
             }
             steps += 1;
             let step = likelihood.step(&step_of_levels(&posterior, &values[levels.clone()], scale));
-            let is_last = is_settled || steps > MOST_STEPS;
+            let is_last = has_ended || steps > MOST_STEPS;
             match (!is_last).then(|| moved(problem, &near, &values, &step, likelihood.variance)).flatten() {
                 Some(moved) => values = moved,
-                None => return Ok(Self { values, near, likelihood, posterior, is_settled }),
+                None => return Ok(Self { values, near, likelihood, posterior, has_ended }),
             }
         }
     }

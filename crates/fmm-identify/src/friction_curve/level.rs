@@ -29,8 +29,8 @@ const FAR: f64 = 40.0;
 
 impl FrictionLevel {
     /// Of these `parts` in `unit`, each of Student's t with `freedom`.
-    pub(super) fn new(parts: Vec<(f64, f64, f64)>, freedom: f64, unit: String) -> Self {
-        let parts = gathered(&parts);
+    pub(super) fn new(parts: &[(f64, f64, f64)], freedom: f64, unit: String) -> Self {
+        let parts = gathered(parts);
         let mut level = Self { value: 0.0, uncertainty: 0.0, parts, freedom, unit };
         (level.value, level.uncertainty) = level.moments_above_zero();
         level
@@ -79,7 +79,9 @@ impl FrictionLevel {
         if !(sum > 0.0) {
             return (0.0, plain.1);
         }
-        above.iter_mut().for_each(|(weight, ..)| *weight /= sum);
+        for (weight, ..) in &mut above {
+            *weight /= sum;
+        }
         moments(&above)
     }
 
@@ -139,12 +141,15 @@ impl FrictionLevel {
     }
 }
 
+/// Weight, mean and variance of a part.
+type Part = (f64, f64, f64);
+
 /// Parts with nearly the same mean and variance as one: a quantile takes a search over all of them.
 fn gathered(parts: &[(f64, f64, f64)]) -> Vec<(f64, f64, f64)> {
     /// Width of a class of means over the deviation of all, and of deviations over themselves.
     const WIDTH: f64 = 0.1;
     let (_, deviation) = moments(parts);
-    let mut classes: BTreeMap<(i64, i64), Vec<(f64, f64, f64)>> = BTreeMap::new();
+    let mut classes: BTreeMap<(i64, i64), Vec<Part>> = BTreeMap::new();
     for &(weight, mean, variance) in parts {
         let class = |value: f64| (value / WIDTH).round() as i64;
         let of_deviation = class(0.5 * variance.max(f64::MIN_POSITIVE).ln());
@@ -188,7 +193,7 @@ mod tests {
 
     #[test]
     fn one_part_far_above_zero_is_student_t() {
-        let level = FrictionLevel::new(vec![(1.0, 5.0, 0.04)], 9.0, "N".into());
+        let level = FrictionLevel::new(&[(1.0, 5.0, 0.04)], 9.0, "N".into());
         assert!((level.value() - 5.0).abs() + (level.uncertainty() - 0.2).abs() < 1e-12);
         let (low, high) = level.interval(0.95).unwrap();
         assert!((low - (5.0 - 0.2 * 2.262_157)).abs() < 1e-5 && (high - (5.0 + 0.2 * 2.262_157)).abs() < 1e-5);
@@ -198,7 +203,7 @@ mod tests {
     /// Half of a normal distribution: mean √(2/π), 95 % quantile of |z| 1.96.
     #[test]
     fn distribution_is_cut_off_at_zero() {
-        let level = FrictionLevel::new(vec![(0.5, 0.0, 1.0), (0.5, 0.0, 1.0)], f64::INFINITY, "1".into());
+        let level = FrictionLevel::new(&[(0.5, 0.0, 1.0), (0.5, 0.0, 1.0)], f64::INFINITY, "1".into());
         assert!((level.value() - (2.0 / PI).sqrt()).abs() < 1e-6, "{}", level.value());
         assert!((level.uncertainty() - (1.0 - 2.0 / PI).sqrt()).abs() < 1e-6);
         let (low, high) = level.interval(0.9).unwrap();

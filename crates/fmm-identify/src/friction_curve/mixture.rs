@@ -95,7 +95,9 @@ impl Prior {
         }
         parts.retain(|part| part.weight > LEAST_WEIGHT);
         let sum: f64 = parts.iter().map(|part| part.weight).sum();
-        parts.iter_mut().for_each(|part| part.weight /= sum);
+        for part in &mut parts {
+            part.weight /= sum;
+        }
         Posterior { bases, parts }
     }
 }

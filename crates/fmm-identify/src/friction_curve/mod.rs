@@ -221,7 +221,9 @@ impl FrictionCurve {
         let by_factor: f64 = self.factor_uncertainty.powi(2);
         let (mean, mut spread) = (self.posterior.mean(), self.posterior.deviations());
         let floor = |value: f64| value.max(0.0);
-        spread.iter_mut().for_each(|deviation| *deviation = deviation.max(f64::MIN_POSITIVE));
+        for deviation in &mut spread {
+            *deviation = deviation.max(f64::MIN_POSITIVE);
+        }
         let mut largest: Vec<f64> = self
             .posterior
             .draws(DRAWS)
@@ -282,8 +284,8 @@ impl FrictionCurve {
             let mean = mean * self.factor;
             (weight, mean, variance * self.factor * self.factor + square * mean * mean)
         };
-        let parts = self.posterior.marginal(weights).into_iter().map(part).collect();
-        FrictionLevel::new(parts, self.freedom, self.unit.clone())
+        let parts: Vec<_> = self.posterior.marginal(weights).into_iter().map(part).collect();
+        FrictionLevel::new(&parts, self.freedom, self.unit.clone())
     }
 }
 
