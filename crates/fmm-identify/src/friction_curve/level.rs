@@ -11,8 +11,8 @@ use crate::friction_curve::mixture::moments;
 
 /// Friction at one speed, or in the mean over a path: a number of a [`FrictionCurve`](crate::FrictionCurve).
 ///
-/// Its distribution is a mixture of Student's t, cut off at zero: friction takes energy. `Display` gives value, standard
-/// uncertainty, unit and 95 % interval.
+/// Its distribution is a mixture of Student's t, cut off at zero: friction takes energy. `Display` gives value,
+/// standard uncertainty, unit and 95 % interval.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionLevel {
     /// Weight, mean and variance of each part.

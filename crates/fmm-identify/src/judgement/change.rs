@@ -124,8 +124,8 @@ fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Opti
     Some(Asked { value: -product / square, uncertainty: noise.sqrt() / square, moved })
 }
 
-/// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself, by more than
-/// `limit` standard uncertainties.
+/// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself, by more
+/// than `limit` standard uncertainties.
 pub(crate) fn asks_for_change(found: &Identification, experiments: &[Experiment], limit: f64) -> bool {
     let term = if found.fitted.model.terms.has(Term::Change) { Term::CurvedChange } else { Term::Change };
     asked(found, experiments, term).is_some_and(|asked| asked.value.abs() > limit * asked.uncertainty)
@@ -138,8 +138,8 @@ impl Candidate {
     }
 }
 
-/// The `candidate` with friction that changes during the record, or whose change is curved if it has one, and its viscous
-/// part as damping of the machine, which stays; `None` for a law with internal state and one without friction.
+/// The `candidate` with friction that changes during the record, or whose change is curved if it has one, and its
+/// viscous part as damping of the machine, which stays; `None` for a law with internal state and one without friction.
 pub(crate) fn with_change(candidate: &Candidate) -> Option<Candidate> {
     let terms = candidate.terms.clone();
     if !candidate.law.is_of_speed() || candidate.law.level().is_none() || terms.has(Term::CurvedChange) {

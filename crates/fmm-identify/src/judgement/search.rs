@@ -106,12 +106,12 @@ impl Inquiry<'_> {
 
     /// The comparison of as many laws as vibrations ask for.
     ///
-    /// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals are
-    /// correlated: laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a gap if
-    /// there is a sign of one; then, unless such a spring explains the records, further families, each begun where its
-    /// friction over the speed follows that of the best law so far; and laws with presliding if there is a sign of it. The
-    /// tests are in [`Comparison::score_tests`]. Laws that cannot be fitted to the end, and that are then far from others,
-    /// are left out; a warning names them, and one each law that cannot be fitted at all.
+    /// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals
+    /// are correlated: laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a
+    /// gap if there is a sign of one; then, unless such a spring explains the records, further families, each begun
+    /// where its friction over the speed follows that of the best law so far; and laws with presliding if there is a
+    /// sign of it. The tests are in [`Comparison::score_tests`]. Laws that cannot be fitted to the end, and that are
+    /// then far from others, are left out; a warning names them, and one each law that cannot be fitted at all.
     ///
     /// # Errors
     /// Those of [`identify`](crate::identify), for a parameter that no law has, and for forces along motions.
@@ -366,7 +366,8 @@ impl Found {
         Some(&self.identifications[judgement.preferred])
     }
 
-    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it if that is best.
+    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it if that is
+    /// best.
     fn base(&self) -> Option<&Identification> {
         self.preferred().filter(|preferred| preferred.fitted.model.terms.has(Term::Change)).or_else(|| self.simple())
     }

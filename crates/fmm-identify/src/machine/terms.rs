@@ -10,8 +10,8 @@ use crate::law::naming::{LINEAR, Units};
 /// Terms that are fitted beside the law, and parameters that are fixed.
 ///
 /// Linear, quadratic and cubic damping belong to every experiment; damping with a free power, the terms of the spring
-/// and a change of the friction during the record to vibrations; zero, inertia, stiffness, gravity, asymmetry, load offset, channels and delay to a
-/// [force along a motion](crate::ForceRecord):
+/// and a change of the friction during the record to vibrations; zero, inertia, stiffness, gravity, asymmetry, load
+/// offset, channels and delay to a [force along a motion](crate::ForceRecord):
 ///
 /// ```text
 /// F(t + τ) = (N + N₀) (µ + a |µ|) + c v + c₂ |v| v + c₃ v³ + m v' + k x + A sin x + B cos x + F₀ + Σ κᵢ yᵢ(t + τ)
