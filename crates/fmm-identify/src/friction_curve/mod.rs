@@ -49,7 +49,7 @@ use crate::quantities::table::{Table, mass_of_stiffness};
 /// # use fmm_sim::{Engine, Exact, Sampling, Scenario};
 ///
 /// // A velocity record; here a simulated one: 10 kg, 2 Hz, 0.02 of a load of 140 N, 500 Hz, noise of 0.3 mm/s.
-/// # let scenario = Scenario::new(Oscillator::from_frequency(10.0, 2.0)?, CoulombViscous::new(0.02, 0.01)?, 140.0)?;
+/// # let scenario = Scenario::new(Oscillator::new(10.0, 1579.0)?, CoulombViscous::new(0.02, 0.01)?, 140.0)?;
 /// # let motion = Exact.run(&scenario.starting_at(0.02, 0.0)?, &Sampling::uniform(2e-3, 1000)?)?;
 /// # let noise = |i: usize| 1e-3 * (((i * i * 7919) % 10_007) as f64 / 10_007.0 - 0.5);
 /// # let velocity = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
