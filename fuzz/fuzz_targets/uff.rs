@@ -8,10 +8,9 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(file) = UffFile::parse(bytes) else { return };
-    let _ = file.reading();
-    for index in 0..file.sets().len().min(4) {
-        if let Ok(reading) = file.channel(index) {
-            assert!(reading.record.values().iter().all(|value| value.is_finite()));
+    for set in file.sets().iter().take(4) {
+        if let Ok(record) = set.record() {
+            assert!(record.values().iter().all(|value| value.is_finite()));
         }
     }
     for set in file.sets() {

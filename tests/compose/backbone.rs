@@ -230,9 +230,9 @@ fn suggestions_name_what_is_there() {
         let backbone = Backbone::of(&record(values, Quantity::Displacement), &BackboneOptions::default()).unwrap();
         let suggestion = backbone.suggestion();
         assert_eq!(suggestion.model(), name, "{suggestion}");
-        let all: f64 = suggestion.damping().iter().map(|term| term.share.value).sum();
+        let all: f64 = suggestion.damping.iter().map(|term| term.share.value).sum();
         assert!((all - 1.0).abs() < 1e-12, "{suggestion}");
-        for term in suggestion.damping() {
+        for term in &suggestion.damping {
             let truth = match term.kind {
                 DampingTermKind::Coulomb => levels[0],
                 DampingTermKind::Linear => levels[1],
@@ -297,7 +297,7 @@ fn no_term_feeds_the_motion() {
     let values = decay(falling, [0.2, 0.0], 1e-2, Quantity::Displacement, 8000);
     let backbone = Backbone::of(&record(values, Quantity::Displacement), &BackboneOptions::default()).unwrap();
     let suggestion = backbone.suggestion();
-    assert!(suggestion.damping().iter().all(|term| term.coefficient.value > 0.0), "{suggestion}");
+    assert!(suggestion.damping.iter().all(|term| term.coefficient.value > 0.0), "{suggestion}");
 }
 
 #[test]
@@ -369,7 +369,7 @@ fn real_records_show_their_springs_and_friction() {
     assert!(suggestion.model().starts_with("coulomb_viscous"), "{suggestion}");
     let decay = Experiment::ring_down(&fork, &Preparation::default()).unwrap();
     let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[decay]).unwrap();
-    for (term, name) in suggestion.damping().iter().zip(["friction_per_mass", "damping_per_mass"]) {
+    for (term, name) in suggestion.damping.iter().zip(["friction_per_mass", "damping_per_mass"]) {
         let fitted = found.finding(name).unwrap().value();
         assert!((term.coefficient.value / fitted - 1.0).abs() < 0.1, "{name}: {term:?} and {fitted}");
     }

@@ -13,7 +13,7 @@ use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
 use fmm_model::Estimated;
-use fmm_record::{Record, Spectrum, blackman_harris};
+use fmm_record::{Record, Spectrum};
 use serde_json::{Value, json};
 
 /// Shows the modes of a decay, and how frequency and damping of one go with its amplitude.
@@ -128,7 +128,7 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
         })
     };
     let damping: Vec<Value> = suggestion
-        .damping()
+        .damping
         .iter()
         .map(|term| {
             json!({
@@ -150,7 +150,7 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
         "suggestion": {
             "model": suggestion.model(),
             "damping": damping,
-            "spring_u": suggestion.spring().iter().map(|term| pair(*term)).collect::<Vec<_>>(),
+            "spring_u": suggestion.spring.iter().map(|term| pair(*term)).collect::<Vec<_>>(),
         },
     })
 }
@@ -159,7 +159,7 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
 /// amplitude with what is suggested.
 pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggestion) -> Vec<Panel> {
     let count = record.len();
-    let spectrum = Spectrum::of(record.values(), &blackman_harris(count));
+    let spectrum = Spectrum::of(record.values());
     let per_line = spectrum.spacing * record.rate() / count as f64;
     let decibels = |square: &f64| 10.0 * square.max(f64::MIN_POSITIVE).log10();
     let lines = spectrum.squares.iter().enumerate().skip(1).map(|(k, square)| (k as f64 * per_line, decibels(square)));
@@ -232,10 +232,9 @@ fn spectrogram(record: &Record, modes: &[DecayMode]) -> Option<Cells> {
     // Windows of Blackman and Harris that overlap by nine tenths.
     let window = values.len() / 8;
     let step = (values.len().checked_sub(window)? / CELLS.0).max(1);
-    let weights = blackman_harris(window);
     let mut columns: Vec<Vec<f64>> = Vec::new();
     for begin in (0..=values.len() - window).step_by(step).take_while(|_| window >= CELLS.1) {
-        let spectrum = Spectrum::of(&values[begin..begin + window], &weights);
+        let spectrum = Spectrum::of(&values[begin..begin + window]);
         let lines_per_cell = highest / CELLS.1 as f64 * window as f64 / (spectrum.spacing * record.rate());
         let line = |cell: usize| (cell as f64 * lines_per_cell).round() as usize;
         let level = |cell: usize| {

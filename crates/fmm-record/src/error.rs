@@ -110,42 +110,15 @@ impl RecordError {
         Self::TimeAxis { index, what }
     }
 
-    /// Numbers of times and values that differ.
-    pub(crate) fn length_mismatch(times: usize, values: usize) -> Self {
-        Self::time(None, format!("{times} time stamps were given for {values} values"))
-    }
-
-    /// One time stamp, or none, does not give an interval.
-    pub(crate) fn too_few_times(count: usize) -> Self {
-        Self::time(None, format!("{count} time stamps do not give a sampling interval; at least 2 are needed"))
-    }
-
-    /// A time stamp (s) that is infinite or not a number.
-    pub(crate) fn time_not_finite(index: usize, time: f64) -> Self {
-        Self::time(Some(index), format!("time stamp {index} is {time} s; it must be finite"))
-    }
-
     /// A time stamp (s) that repeats its predecessor or precedes it.
     pub(crate) fn not_increasing(index: usize, time: f64, previous: f64) -> Self {
         let what = format!("time must increase, but time stamp {index} is {time} s after {previous} s");
         Self::time(Some(index), what)
     }
 
-    /// Samples (s) that lie too far out for their time stamps to be told apart.
-    pub(crate) fn times_alike(start: f64, interval: f64, length: usize) -> Self {
-        Self::options(format!(
-            "with a start of {start} s and an interval of {interval} s, {length} time stamps cannot be told apart"
-        ))
-    }
-
     /// A sampling interval (s) that is zero, negative or not finite.
     pub(crate) fn interval(interval: f64) -> Self {
         Self::options(format!("the sampling interval must be positive and finite, but is {interval} s"))
-    }
-
-    /// A sampling rate (Hz) that is zero, negative or not finite.
-    pub(crate) fn rate(rate: f64) -> Self {
-        Self::options(format!("the sampling rate must be positive and finite, but is {rate} Hz"))
     }
 
     /// A channel that is not there, or is not the only one.
@@ -173,18 +146,6 @@ impl RecordError {
         Self::Unsupported { what: what.into() }
     }
 
-    /// Samples that are not finite: `count` of `length`, the first of them at `time` (s).
-    pub(crate) fn not_finite(index: usize, time: f64, count: usize, length: usize) -> Self {
-        let are = if count == 1 { "is" } else { "are" };
-        let what = format!(
-            "{count} of {length} samples {are} not finite; the first is sample {index} (at {time} s); cut the \
-             record there, or fill the gap"
-        );
-        Self::Values { index, what }
-    }
-}
-
-impl RecordError {
     /// A file that the system does not open, read or create.
     pub(crate) fn io(verb: &str, path: &std::path::Path, source: io::Error) -> Self {
         Self::Io { what: format!("{verb} {}", path.display()), source: Arc::new(source) }

@@ -33,7 +33,7 @@
 //! | when does motion begin, how does it swing, how good is the record, is it one free vibration? | [`Examination`] |
 //! | noise, resolution, limits of plain values? | [`noise`], [`quantisation_step`], [`saturation`] |
 //! | another form of it? | [`Record::crop`], [`Record::scaled`], [`Record::shifted`], [`Record::smoothed_by`], [`Record::integrate`], [`Record::differentiate`] |
-//! | which smoothing? | none for a fit, as it correlates the noise; for a derivative [`savitzky_golay_derivative`]; [`moving_average`] to repeat what MATLAB's `smooth` or `movmean` did |
+//! | which smoothing? | [`Smoothing`]: none for a fit, as it correlates the noise; polynomials for a derivative; a moving average to repeat what MATLAB's `smooth` or `movmean` did |
 //!
 //! # Units and conventions
 //!
@@ -79,8 +79,7 @@ mod sampling;
 mod tests;
 mod units;
 
-pub use calculus::savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
-pub use calculus::{EndRule, Smoothing, moving_average};
+pub use calculus::{EndRule, Smoothing};
 pub use error::RecordError;
 pub use examination::Examination;
 pub use examination::further_release::FurtherRelease;
@@ -92,16 +91,16 @@ pub use examination::release::Release;
 pub use examination::saturation::{Saturation, saturation};
 pub use examination::second_mode::SecondMode;
 pub use examination::spikes::Spike;
-pub use examination::swings::{Crossing, Peak, Swings, period_change};
+pub use examination::swings::{Crossing, Peak, Swings};
 pub use examination::upsampling::Upsampling;
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub use files::arrays::Array;
 pub use files::reading::{Column, Reading};
 pub use files::{Channel, DataFile, Format, Reader, open, uff};
-pub use numerics::spectrum::{RealTransform, Spectrum, blackman_harris};
+pub use numerics::spectrum::{RealTransform, Spectrum};
 pub use realfft::num_complex::Complex64;
 pub use record::Record;
-pub use sampling::{Sampling, UniformTimes};
+pub use sampling::Sampling;
 pub use units::label::Label;
 pub use units::request::{Meaning, Request};
 pub use units::{Quantity, WrittenUnit};

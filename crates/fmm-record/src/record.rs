@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::error::RecordError;
 use crate::numerics::mean;
-use crate::sampling::UniformTimes;
+use crate::sampling::uniform_grid;
 use crate::units::Quantity;
 
 /// The times (s) between which samples are taken, to the end of the record where none is given.
@@ -36,15 +36,8 @@ impl Span {
         if first > last { Err(nothing()) } else { Ok(first as usize..last as usize + 1) }
     }
 
-    /// The part inside of what [`Record::new`] makes; values outside may be anything.
-    pub(crate) fn record(
-        self,
-        start: f64,
-        interval: f64,
-        mut values: Vec<f64>,
-        quantity: Quantity,
-        unit: impl Into<String>,
-    ) -> Result<Record, RecordError> {
+    /// The part inside of what [`Record::new`] makes, of no quantity and unit; values outside may be anything.
+    pub(crate) fn record(self, start: f64, interval: f64, mut values: Vec<f64>) -> Result<Record, RecordError> {
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(RecordError::interval(interval));
         }
@@ -55,47 +48,48 @@ impl Span {
         let length = values.len();
         let reach = start.abs() + interval * length as f64;
         if !(reach.is_finite() && reach * f64::EPSILON < interval) {
-            return Err(RecordError::times_alike(start, interval, length));
+            return Err(RecordError::options(format!(
+                "with a start of {start} s and an interval of {interval} s, {length} time stamps cannot be told apart"
+            )));
         }
         let kept = self.samples(start, interval, length)?;
-        let inside = &values[kept.clone()];
-        if let Some(index) = inside.iter().position(|value| !value.is_finite()) {
-            let count = inside.iter().filter(|value| !value.is_finite()).count();
-            let index = kept.start + index;
-            return Err(RecordError::not_finite(index, start + interval * index as f64, count, kept.len()));
-        }
         values.truncate(kept.end);
         values.drain(..kept.start);
-        Ok(Record { start: start + interval * kept.start as f64, interval, values, quantity, unit: unit.into() })
+        let record = Record {
+            start: start + interval * kept.start as f64,
+            interval,
+            values,
+            quantity: Quantity::Other,
+            unit: String::new(),
+        };
+        let Some(first) = record.values.iter().position(|value| !value.is_finite()) else { return Ok(record) };
+        let count = record.values.iter().filter(|value| !value.is_finite()).count();
+        let (index, length) = (kept.start + first, kept.len());
+        let (time, are) = (start + interval * index as f64, if count == 1 { "is" } else { "are" });
+        let what = format!(
+            "{count} of {length} samples {are} not finite; the first is sample {index} (at {time} s); cut the record \
+             there, or fill the gap"
+        );
+        Err(RecordError::Values { index, what })
     }
 
     /// The part inside of what [`Record::sampled`] makes.
-    pub(crate) fn sampled(
-        self,
-        rate: f64,
-        values: Vec<f64>,
-        quantity: Quantity,
-        unit: impl Into<String>,
-    ) -> Result<Record, RecordError> {
+    pub(crate) fn sampled(self, rate: f64, values: Vec<f64>) -> Result<Record, RecordError> {
         if !(rate > 0.0 && rate.is_finite() && rate.recip().is_finite()) {
-            return Err(RecordError::rate(rate));
+            let what = format!("the sampling rate must be positive and finite, but is {rate} Hz");
+            return Err(RecordError::options(what));
         }
-        self.record(0.0, rate.recip(), values, quantity, unit)
+        self.record(0.0, rate.recip(), values)
     }
 
     /// The part inside of what [`Record::from_times`] makes.
-    pub(crate) fn timed(
-        self,
-        times: &[f64],
-        values: Vec<f64>,
-        quantity: Quantity,
-        unit: impl Into<String>,
-    ) -> Result<Record, RecordError> {
+    pub(crate) fn timed(self, times: &[f64], values: Vec<f64>) -> Result<Record, RecordError> {
         if times.len() != values.len() {
-            return Err(RecordError::length_mismatch(times.len(), values.len()));
+            let (times, values) = (times.len(), values.len());
+            return Err(RecordError::time(None, format!("{times} time stamps were given for {values} values")));
         }
-        let grid = UniformTimes::of(times)?;
-        self.record(grid.start(), grid.interval(), values, quantity, unit)
+        let (start, interval) = uniform_grid(times)?;
+        self.record(start, interval, values)
     }
 }
 
@@ -147,7 +141,7 @@ impl Record {
         quantity: Quantity,
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
-        Span::default().record(start, interval, values, quantity, unit)
+        Ok(Span::default().record(start, interval, values)?.with_quantity(quantity).with_unit(unit))
     }
 
     /// A record sampled at `rate` (Hz) from time 0 on.
@@ -160,21 +154,44 @@ impl Record {
         quantity: Quantity,
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
-        Span::default().sampled(rate, values, quantity, unit)
+        Ok(Span::default().sampled(rate, values)?.with_quantity(quantity).with_unit(unit))
     }
 
-    /// A record of `values` at `times` (s), which must be uniform as [`UniformTimes`] defines it.
+    /// A record of `values` at `times` (s), which must lie on a uniform grid:
+    ///
+    /// ```text
+    /// h = (t_last − t_first)/(n − 1),        |t_i − (t_first + i h)| ≤ 0.01 h + d
+    /// ```
+    ///
+    /// The first term is jitter. The second is rounding: *d* is one unit of the last decimal that
+    /// the stamps carry (half a unit for the stamp itself, half for the ends that define the grid), 1 ms for stamps
+    /// with three decimals. It counts only if rounding shows: if more than 1 % of the steps, and more than two, differ
+    /// from the usual one. A few odd steps among equal ones are gaps. No step may exceed 1.5 h + d.
+    ///
+    /// The rate is taken as a whole number of hertz if it is one within 10⁻⁵, because time columns often carry few
+    /// digits.
+    ///
+    /// ```
+    /// use fmm_record::{Quantity, Record};
+    ///
+    /// // 300 Hz, written with three decimals.
+    /// let times: Vec<f64> = (0..3001).map(|i| (f64::from(i) / 300.0 * 1e3).round() / 1e3).collect();
+    /// let record = Record::from_times(&times, vec![0.0; 3001], Quantity::Velocity, "m/s")?;
+    /// assert_eq!(record.interval(), 1.0 / 300.0);
+    /// # Ok::<(), fmm_record::RecordError>(())
+    /// ```
     ///
     /// # Errors
-    /// [`RecordError::TimeAxis`] if there are not as many times as values, and as [`UniformTimes::of`] and
-    /// [`Record::new`].
+    /// [`RecordError::TimeAxis`] if there are not as many times as values or fewer than two, or if one is not finite,
+    /// repeated, decreasing or off the grid; [`RecordError::Options`] if they span more than a number can hold;
+    /// otherwise as [`Record::new`].
     pub fn from_times(
         times: &[f64],
         values: Vec<f64>,
         quantity: Quantity,
         unit: impl Into<String>,
     ) -> Result<Self, RecordError> {
-        Span::default().timed(times, values, quantity, unit)
+        Ok(Span::default().timed(times, values)?.with_quantity(quantity).with_unit(unit))
     }
 
     /// Time of the first sample (s).

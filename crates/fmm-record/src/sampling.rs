@@ -8,78 +8,38 @@ const JITTER: f64 = 0.01;
 /// Largest relative distance of a rate from a whole number of hertz to which it is rounded (1).
 const RATE_ROUNDING: f64 = 1e-5;
 
-/// The uniform grid behind a column of time stamps.
-///
-/// ```text
-/// h = (t_last − t_first)/(n − 1),        |t_i − (t_first + i h)| ≤ 0.01 h + d
-/// ```
-///
-/// The first term is jitter. The second is rounding: *d* is one unit of the last decimal that
-/// the stamps carry (half a unit for the stamp itself, half for the ends that define the grid), 1 ms for stamps
-/// with three decimals. It counts only if rounding shows: if more than 1 % of the steps, and more than two, differ
-/// from the usual one. A few odd steps among equal ones are gaps. No step may exceed 1.5 h + d.
-///
-/// The rate is taken as a whole number of hertz if it is one within 10⁻⁵, because time columns often carry few digits.
-///
-/// ```
-/// use fmm_record::UniformTimes;
-///
-/// // 300 Hz, written with three decimals.
-/// let times: Vec<f64> = (0..3001).map(|i| (f64::from(i) / 300.0 * 1e3).round() / 1e3).collect();
-/// assert_eq!(UniformTimes::of(&times)?.interval(), 1.0 / 300.0);
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct UniformTimes {
-    start: f64,
-    interval: f64,
-}
-
-impl UniformTimes {
-    /// The grid on which `times` (s) lie.
-    ///
-    /// # Errors
-    /// [`RecordError::TimeAxis`] if there are fewer than two times, or one is not finite, repeated, decreasing or off
-    /// the grid; [`RecordError::Options`] if they span more than a number can hold.
-    pub fn of(times: &[f64]) -> Result<Self, RecordError> {
-        let (Some(&start), Some(&end), count @ 2..) = (times.first(), times.last(), times.len()) else {
-            return Err(RecordError::too_few_times(times.len()));
-        };
-        if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
-            return Err(RecordError::time_not_finite(index, time));
-        }
-        if times.windows(2).any(|pair| pair[1] <= pair[0]) {
-            return Err(odd_stamp(times, 0.0).unwrap_or_else(|| RecordError::interval(0.0)));
-        }
-        let interval = (end - start) / (count - 1) as f64;
-        if !(interval > 0.0 && interval.is_finite()) {
-            return Err(RecordError::interval(interval));
-        }
-        let rounding = visible_rounding(times, interval);
-        let tolerance = JITTER * interval + rounding;
-        let mut previous = start;
-        for (index, &time) in times.iter().enumerate() {
-            let expected = start + interval * index as f64;
-            let deviation = time - expected;
-            if deviation.abs() > tolerance || time - previous > 1.5 * interval + rounding {
-                // One gap bends the grid, which all stamps before it then miss.
-                let drifted = not_uniform(index, time, expected, interval);
-                return Err(odd_stamp(times, tolerance).unwrap_or(drifted));
-            }
-            previous = time;
-        }
-        Ok(Self { start, interval: whole_hertz(interval) })
+/// Start and interval (s) of the uniform grid on which `times` (s) lie, as [`Record::from_times`](crate::Record)
+/// defines it.
+pub(crate) fn uniform_grid(times: &[f64]) -> Result<(f64, f64), RecordError> {
+    let (Some(&start), Some(&end), count @ 2..) = (times.first(), times.last(), times.len()) else {
+        let count = times.len();
+        let what = format!("{count} time stamps do not give a sampling interval; at least 2 are needed");
+        return Err(RecordError::time(None, what));
+    };
+    if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
+        return Err(RecordError::time(Some(index), format!("time stamp {index} is {time} s; it must be finite")));
     }
-
-    /// Time of the first stamp (s).
-    pub fn start(&self) -> f64 {
-        self.start
+    if times.windows(2).any(|pair| pair[1] <= pair[0]) {
+        return Err(odd_stamp(times, 0.0).unwrap_or_else(|| RecordError::interval(0.0)));
     }
-
-    /// Interval of the grid (s).
-    pub fn interval(&self) -> f64 {
-        self.interval
+    let interval = (end - start) / (count - 1) as f64;
+    if !(interval > 0.0 && interval.is_finite()) {
+        return Err(RecordError::interval(interval));
     }
+    let rounding = visible_rounding(times, interval);
+    let tolerance = JITTER * interval + rounding;
+    let mut previous = start;
+    for (index, &time) in times.iter().enumerate() {
+        let expected = start + interval * index as f64;
+        let deviation = time - expected;
+        if deviation.abs() > tolerance || time - previous > 1.5 * interval + rounding {
+            // One gap bends the grid, which all stamps before it then miss.
+            let drifted = not_uniform(index, time, expected, interval);
+            return Err(odd_stamp(times, tolerance).unwrap_or(drifted));
+        }
+        previous = time;
+    }
+    Ok((start, whole_hertz(interval)))
 }
 
 /// The error of the first stamp that comes early or late after the one before it, by more than `tolerance` (s) and by
@@ -222,8 +182,8 @@ mod tests {
     #[test]
     fn stamps_with_few_digits_are_uniform() {
         for (rate, decimals) in [(1000.0, 3), (600.0, 3), (1024.0, 4), (25_600.0, 5), (500.0, 15), (1000.0, 15)] {
-            let grid = UniformTimes::of(&stamps(rate, decimals, 60_001)).unwrap();
-            assert_eq!(grid.interval(), 1.0 / rate, "{rate} Hz with {decimals} decimals");
+            let grid = uniform_grid(&stamps(rate, decimals, 60_001)).unwrap();
+            assert_eq!(grid.1, 1.0 / rate, "{rate} Hz with {decimals} decimals");
         }
     }
 
@@ -231,8 +191,8 @@ mod tests {
     fn the_rate_is_rounded_to_whole_hertz_only_within_the_stated_limit() {
         let near = [0.0, 1.0 / (1000.0 * (1.0 + 9e-6))];
         let far = [0.0, 1.0 / (1000.0 * (1.0 + 1.1e-5))];
-        assert_eq!(UniformTimes::of(&near).unwrap().interval(), 1e-3);
-        assert_eq!(UniformTimes::of(&far).unwrap().interval(), far[1]);
+        assert_eq!(uniform_grid(&near).unwrap().1, 1e-3);
+        assert_eq!(uniform_grid(&far).unwrap().1, far[1]);
     }
 
     #[test]
@@ -240,7 +200,7 @@ mod tests {
         for (jitter, uniform) in [(0.0099e-3, true), (0.0101e-3, false)] {
             let mut times = stamps(1000.0, 15, 1000);
             times[500] += jitter;
-            assert_eq!(UniformTimes::of(&times).is_ok(), uniform, "jitter of {jitter} s");
+            assert_eq!(uniform_grid(&times).is_ok(), uniform, "jitter of {jitter} s");
         }
     }
 
@@ -252,7 +212,7 @@ mod tests {
             for time in &mut times[count as usize / 3..] {
                 *time += gap;
             }
-            let found = UniformTimes::of(&times);
+            let found = uniform_grid(&times);
             assert!(says(&found, "sampling is not uniform"), "{gap} s in {count} stamps: {found:?}");
         }
     }
@@ -262,7 +222,7 @@ mod tests {
         for (rate, decimals, gap) in [(1000.0, 3, 1e-3), (600.0, 3, 0.01), (1000.0, 15, 1e-4)] {
             let mut times = stamps(rate, decimals, 10_000);
             times[3333..].iter_mut().for_each(|time| *time += gap);
-            let error = UniformTimes::of(&times).unwrap_err();
+            let error = uniform_grid(&times).unwrap_err();
             let RecordError::TimeAxis { index: Some(3333), what } = error else {
                 panic!("{rate} Hz with {decimals} decimals: {error}")
             };
@@ -270,10 +230,10 @@ mod tests {
             let deviation: f64 = deviation.parse().unwrap();
             assert!((deviation - gap).abs() < 0.6e-3, "{deviation} s for {gap} s");
         }
-        let error = UniformTimes::of(&[0.0, 1.0, 2.0, 300.0, 4.0, 5.0]).unwrap_err();
+        let error = uniform_grid(&[0.0, 1.0, 2.0, 300.0, 4.0, 5.0]).unwrap_err();
         assert!(matches!(error, RecordError::TimeAxis { index: Some(3), .. }));
         assert!(error.to_string().contains("is 300 s, but a uniform interval of 1 s puts it at 3 s"), "{error}");
-        let back = UniformTimes::of(&[0.0, 1.0, 2.0, -7.0, 4.0, 5.0]).unwrap_err();
+        let back = uniform_grid(&[0.0, 1.0, 2.0, -7.0, 4.0, 5.0]).unwrap_err();
         assert_eq!(back.to_string(), "time must increase, but time stamp 3 is -7 s after 2 s");
     }
 
@@ -285,7 +245,7 @@ mod tests {
         }
         times[700] += 3e-4 / 7.0;
         assert_eq!(
-            UniformTimes::of(&times).unwrap_err().to_string(),
+            uniform_grid(&times).unwrap_err().to_string(),
             "sampling is not uniform: time stamp 700 is 0.8235 s, but a uniform interval of 0.001 s puts it at 0.823457 s \
              (0.0000428571 s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
              them first"
@@ -294,11 +254,11 @@ mod tests {
 
     #[test]
     fn time_that_does_not_increase_is_its_own_error() {
-        let error = UniformTimes::of(&[0.0, 1.0, 1.0, 2.0]).unwrap_err();
+        let error = uniform_grid(&[0.0, 1.0, 1.0, 2.0]).unwrap_err();
         assert_eq!(error.to_string(), "time must increase, but time stamp 2 is 1 s after 1 s");
-        assert!(says(&UniformTimes::of(&[0.0]), "1 time stamps do not give a sampling interval"));
-        assert!(says(&UniformTimes::of(&[0.0, f64::NAN, 2.0]), "it must be finite"));
-        assert!(says(&UniformTimes::of(&[-1.7e308, 1.7e308]), "the sampling interval must be positive"));
+        assert!(says(&uniform_grid(&[0.0]), "1 time stamps do not give a sampling interval"));
+        assert!(says(&uniform_grid(&[0.0, f64::NAN, 2.0]), "it must be finite"));
+        assert!(says(&uniform_grid(&[-1.7e308, 1.7e308]), "the sampling interval must be positive"));
     }
 
     #[test]

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
         let mut file = Vec::new();
         write_to(&mut file, &[DataSet::of_record(&record)], Form::Ascii)?;
-        check("UFF 58", &UffFile::parse(&file)?.reading()?.record)?;
+        check("UFF 58", &UffFile::parse(&file)?.sets()[0].record()?)?;
     }
     #[cfg(feature = "mat")]
     {

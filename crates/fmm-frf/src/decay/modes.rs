@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fmm_record::{Record, Spectrum, Swings, blackman_harris, period_change};
+use fmm_record::{Record, Spectrum, Swings};
 
 /// A vibration of which a decay consists.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,9 +115,8 @@ pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
     let strongest = found.first().map_or(0.0, |mode| mode.amplitude);
     found.retain(|mode| mode.amplitude > LEAST * strongest);
     let length = effective_length(record, mean);
-    let swings = Swings::of(record);
-    let (times, around) = swings.turns(record.quantity());
-    let change = period_change(&times, &around).map_or(0.0, f64::abs);
+    let (times, heights) = Swings::of(record).turns(record.quantity());
+    let change = Swings::period_change(&times, &heights).map_or(0.0, f64::abs);
     let mut modes: Vec<DecayMode> = Vec::new();
     for mut mode in found {
         let is_own = modes.iter().all(|stronger| {
@@ -157,7 +156,7 @@ pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
 
 /// Lines of the spectrum of `values` at this `rate` (Hz).
 fn lines(values: &[f64], rate: f64) -> Vec<DecayMode> {
-    let spectrum = Spectrum::of(values, &blackman_harris(values.len()));
+    let spectrum = Spectrum::of(values);
     let squares = &spectrum.squares;
     let lobe = (WIDTH / spectrum.spacing).ceil() as usize;
     let floor = Floor::of(squares, lobe);
@@ -195,8 +194,7 @@ impl Halves {
         if count < FEWEST / 2 {
             return None;
         }
-        let weights = blackman_harris(count);
-        let spectra = [0, count].map(|begin| Spectrum::of(&values[begin..begin + count], &weights));
+        let spectra = [0, count].map(|begin| Spectrum::of(&values[begin..begin + count]));
         let lobe = (WIDTH / spectra[0].spacing).ceil() as usize;
         let floors = [0, 1].map(|half| Floor::of(&spectra[half].squares, lobe));
         Some(Self { count, spectra, floors })

@@ -1,13 +1,12 @@
 //! Suggestion: the terms of damping and spring that a backbone shows.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 use fmm_model::{Damping, Estimated, ModelError};
 
 use crate::decay::backbone::BackbonePoint;
 use crate::decay::spring::{SIGNIFICANT, scored, stiffening};
-use crate::friction::equivalent_damping_of_friction;
 
 /// Kind of friction or damping by the way in which it takes energy from a vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +29,8 @@ impl DampingTermKind {
     pub fn equivalent_damping(self, velocity: f64) -> f64 {
         let of = |damping: Result<Damping, ModelError>| damping.map(|damping| damping.cycle_equivalent(velocity));
         match self {
-            Self::Coulomb => equivalent_damping_of_friction(1.0, velocity).unwrap_or(f64::INFINITY),
+            // The first harmonic of the square wave F sgn v, 4F/π, by the amplitude of the velocity.
+            Self::Coulomb => 4.0 / (PI * velocity),
             Self::Linear => 1.0,
             // A coefficient of 1 is not refused.
             Self::Quadratic => of(Damping::new(0.0, 1.0)).unwrap_or(f64::NAN),
@@ -56,9 +56,12 @@ pub struct DampingTerm {
 /// It is the sum of Coulomb friction and linear, quadratic and cubic damping with the least Bayesian criterion, among
 /// those whose coefficients exceed twice their uncertainty. `Display` prints it in words.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Suggestion {
-    damping: Vec<DampingTerm>,
-    spring: Vec<Estimated>,
+    /// The terms of damping; empty if none explains the points.
+    pub damping: Vec<DampingTerm>,
+    /// f₀ (Hz), k₃ and k₅, without those that the frequencies do not show.
+    pub spring: Vec<Estimated>,
 }
 
 /// Relative error of the closed forms for the damping (1).
@@ -98,16 +101,6 @@ impl Suggestion {
             DampingTerm { kind: *kind, coefficient: *coefficient, share }
         };
         Self { damping: terms.iter().map(term).collect(), spring: spring.to_vec() }
-    }
-
-    /// The terms of damping; empty if none explains the points.
-    pub fn damping(&self) -> &[DampingTerm] {
-        &self.damping
-    }
-
-    /// f₀ (Hz), k₃ and k₅, without those that the frequencies do not show.
-    pub fn spring(&self) -> &[Estimated] {
-        &self.spring
     }
 
     /// c_eq/m (1/s) of all terms together, of a vibration of this velocity amplitude ωA.
@@ -154,5 +147,19 @@ impl fmt::Display for Suggestion {
             write!(f, "{} {name} takes {percent} % of the energy", if index == 0 { ":" } else { "," })?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cycle_of_dry_friction_dissipates_as_much() {
+        let (friction, amplitude, omega) = (0.7, 0.02, 13.0);
+        let damping = friction * DampingTermKind::Coulomb.equivalent_damping(amplitude * omega);
+        // 4 F X against π c ω X².
+        let (dry, viscous) = (4.0 * friction * amplitude, PI * damping * omega * amplitude * amplitude);
+        assert!((dry / viscous - 1.0).abs() < 1e-15, "{dry} J, {viscous} J");
     }
 }

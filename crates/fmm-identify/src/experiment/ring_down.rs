@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_model::ModelError;
-use fmm_record::{Examination, Interruption, Peak, Quantity, Record, Swings, Upsampling, period_change};
+use fmm_record::{Examination, Interruption, Peak, Quantity, Record, Swings, Upsampling};
 
 use super::acceleration::{jumps, velocity_of};
 use super::{Experiment, usable};
@@ -117,7 +117,7 @@ impl Experiment {
             spikes: spikes.iter().map(|spike| spike.count).sum(),
             saturation: views.record.saturation(),
             offset_step: seen.offset_step(),
-            period_change: period_change(&times, &heights),
+            period_change: Swings::period_change(&times, &heights),
             hum,
             further_releases: further.iter().map(|release| release.time).collect(),
             interruption,

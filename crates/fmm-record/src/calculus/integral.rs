@@ -2,6 +2,7 @@
 
 use fmm_model::Unit;
 
+use crate::calculus::Smoothing;
 use crate::error::RecordError;
 use crate::numerics::Sum;
 use crate::record::Record;
@@ -49,7 +50,8 @@ impl Record {
                 sum.value()
             })
             .collect();
-        Self::new(self.start(), self.interval(), values, quantity, unit_of_integral(self.unit()))
+        let unit = unit_of(self).times(&Unit::of("s")).to_string();
+        Self::new(self.start(), self.interval(), values, quantity, unit)
     }
 
     /// The derivative in time by central differences: displacement becomes velocity, velocity becomes acceleration.
@@ -66,14 +68,26 @@ impl Record {
     /// [`RecordError::Unsupported`] unless this is displacement or velocity, [`RecordError::TooShort`] below three
     /// samples, [`RecordError::Values`] if the derivative overflows.
     pub fn differentiate(&self) -> Result<Self, RecordError> {
-        self.quantity().derivative()?;
-        let per_sample = central_differences(self.values())?;
-        self.with_derivative(per_sample.into_iter().map(|slope| slope / self.interval()).collect())
+        self.differentiate_smoothed_by(&Smoothing::None)
     }
 
-    /// A record of the derivative, with these `values` in its unit.
-    pub(crate) fn with_derivative(&self, values: Vec<f64>) -> Result<Self, RecordError> {
-        Self::new(self.start(), self.interval(), values, self.quantity().derivative()?, unit_of_derivative(self.unit()))
+    /// The derivative in time after `smoothing`: as [`Record::differentiate`] with [`Smoothing::slope`].
+    ///
+    /// # Errors
+    /// Those of [`Record::differentiate`] and [`Smoothing::apply`].
+    pub fn differentiate_smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
+        let quantity = self.quantity().derivative()?;
+        let slopes = smoothing.slope(self.values())?.into_iter().map(|slope| slope / self.interval()).collect();
+        let unit = unit_of(self).per(&Unit::of("s")).to_string();
+        Self::new(self.start(), self.interval(), slopes, quantity, unit)
+    }
+
+    /// The record after `smoothing`.
+    ///
+    /// # Errors
+    /// Those of [`Smoothing::apply`].
+    pub fn smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
+        Ok(self.derived(self.start(), smoothing.apply(self.values())?))
     }
 }
 
@@ -91,16 +105,9 @@ pub(crate) fn central_differences(x: &[f64]) -> Result<Vec<f64>, RecordError> {
     Ok(slopes)
 }
 
-fn unit_of_integral(unit: &str) -> String {
-    read(unit).times(&Unit::of("s")).to_string()
-}
-
-fn unit_of_derivative(unit: &str) -> String {
-    read(unit).per(&Unit::of("s")).to_string()
-}
-
 /// The unit of a record, which may be empty, or have a square without its sign.
-fn read(unit: &str) -> Unit {
+fn unit_of(record: &Record) -> Unit {
+    let unit = record.unit();
     if unit.is_empty() { Unit::default() } else { Unit::of(&unit.replace("/s2", "/s²")) }
 }
 
@@ -146,10 +153,10 @@ mod tests {
     #[test]
     fn units_follow_their_rule_both_ways() {
         for (unit, integral) in [("m/s²", "m/s"), ("m/s^2", "m/s"), ("m/s", "m"), ("V", "V s"), ("", "s")] {
-            assert_eq!(unit_of_integral(unit), integral);
+            assert_eq!(sampled(Quantity::Velocity, unit, |t| t).integrate(0.0).unwrap().unit(), integral);
         }
         for (unit, derivative) in [("m", "m/s"), ("m/s", "m/s²"), ("V s", "V"), ("", "1/s")] {
-            assert_eq!(unit_of_derivative(unit), derivative);
+            assert_eq!(sampled(Quantity::Velocity, unit, |t| t).differentiate().unwrap().unit(), derivative);
         }
     }
 

@@ -4,10 +4,9 @@ pub(crate) mod integral;
 pub(crate) mod savitzky_golay;
 
 use crate::calculus::integral::central_differences;
-use crate::calculus::savitzky_golay::{savitzky_golay, savitzky_golay_derivative};
+use crate::calculus::savitzky_golay::{Functional, sliding};
 use crate::error::RecordError;
 use crate::numerics::Sum;
-use crate::record::Record;
 
 /// Rule of a moving average where its window reaches beyond the record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,31 +32,6 @@ impl EndRule {
     }
 }
 
-/// Moving average of `values` over `span` samples, centred.
-///
-/// ```text
-/// y_i = (x_{i−h} + … + x_{i+h})/(2h + 1),        h = (span − 1)/2
-/// ```
-///
-/// The time taken does not depend on the span. Sums are made afresh after at most 4096 samples (or a span, if that
-/// is longer) and carry their rounding error along, so that nothing drifts in long records.
-///
-/// ```
-/// use fmm_record::{EndRule, moving_average};
-///
-/// let values = [3.0, 6.0, 0.0, 9.0, 3.0, 6.0];
-/// assert_eq!(moving_average(&values, 5, EndRule::Shrinking)?, [3.0, 3.0, 4.2, 4.8, 6.0, 6.0]);
-/// assert_eq!(moving_average(&values, 5, EndRule::Truncated)?, [3.0, 4.5, 4.2, 4.8, 4.5, 6.0]);
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-///
-/// # Errors
-/// [`RecordError::Options`] if the span is even, 0 included: an even window has no centre. (`smooth` takes the odd
-/// number below, `movmean` a window that is shifted by half a sample.)
-pub fn moving_average(values: &[f64], span: usize, ends: EndRule) -> Result<Vec<f64>, RecordError> {
-    if span.is_multiple_of(2) { Err(even_span(span)) } else { Ok(averaged(values, span / 2, ends)) }
-}
-
 /// A window without a centre.
 pub(crate) fn even_span(span: usize) -> RecordError {
     let (below, above) = (span.saturating_sub(1).max(1), span + 1);
@@ -65,6 +39,9 @@ pub(crate) fn even_span(span: usize) -> RecordError {
 }
 
 /// Moving average over `half` samples to either side.
+///
+/// The time taken does not depend on the span. Sums are made afresh after at most 4096 samples (or a span, if that
+/// is longer) and carry their rounding error along, so that nothing drifts in long records.
 pub(crate) fn averaged(values: &[f64], half: usize, ends: EndRule) -> Vec<f64> {
     if half == 0 {
         return values.to_vec();
@@ -97,30 +74,52 @@ pub(crate) fn averaged(values: &[f64], half: usize, ends: EndRule) -> Vec<f64> {
 /// ```
 /// use fmm_record::{EndRule, Smoothing};
 ///
-/// let mean = Smoothing::MovingAverage { span: 5, ends: EndRule::Shrinking };
-/// // A fifth of the power of white noise remains.
-/// assert!((mean.noise_gain()? - 0.2f64.sqrt()).abs() < 1e-12);
-/// assert_eq!(Smoothing::None.noise_gain()?, 1.0);
+/// let values = [3.0, 6.0, 0.0, 9.0, 3.0, 6.0];
+/// let average = |ends| Smoothing::MovingAverage { span: 5, ends }.apply(&values);
+/// assert_eq!(average(EndRule::Shrinking)?, [3.0, 3.0, 4.2, 4.8, 6.0, 6.0]);
+/// assert_eq!(average(EndRule::Truncated)?, [3.0, 4.5, 4.2, 4.8, 4.5, 6.0]);
+///
+/// let cubic: Vec<f64> = (0..50).map(|i| f64::from(i).powi(3) - 20.0 * f64::from(i).powi(2)).collect();
+/// let polynomial = Smoothing::SavitzkyGolay { span: 21, degree: 3 };
+/// assert!(cubic.iter().zip(polynomial.apply(&cubic)?).all(|(x, y)| (x - y).abs() < 1e-9));
+/// let parabola: Vec<f64> = (0..50).map(|i| f64::from(i).powi(2)).collect();
+/// let slope = polynomial.slope(&parabola)?;
+/// assert!(slope.iter().enumerate().all(|(i, slope)| (slope - 2.0 * i as f64).abs() < 1e-10));
 /// # Ok::<(), fmm_record::RecordError>(())
 /// ```
+///
+/// # References
+/// A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of data by simplified least squares procedures",
+/// Anal. Chem. 36 (1964) 1627, <https://doi.org/10.1021/ac60214a047>; P. A. Gorry, Anal. Chem. 62 (1990) 570,
+/// <https://doi.org/10.1021/ac00205a007> (the ends).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Smoothing {
     /// Not at all.
     #[default]
     None,
-    /// A [`moving_average`].
+    /// Moving average, centred.
+    ///
+    /// ```text
+    /// y_i = (x_{i−h} + … + x_{i+h})/(2h + 1),        h = (span − 1)/2
+    /// ```
     MovingAverage {
-        /// Samples averaged; odd.
+        /// Samples averaged; odd, since an even window has no centre. (MATLAB's `smooth` takes the odd number below,
+        /// `movmean` a window that is shifted by half a sample.)
         span: usize,
         /// Rule at the ends.
         ends: EndRule,
     },
-    /// A [`savitzky_golay`] filter.
+    /// Savitzky and Golay's filter: each sample becomes the value of a polynomial, fitted by least squares to the
+    /// samples around it. A polynomial up to the degree passes unchanged, so peaks lose less than under a moving
+    /// average of the same span.
+    ///
+    /// At the ends, where the window would reach beyond the record, the polynomial of the first (last) full window is
+    /// evaluated, as MATLAB's `sgolayfilt` and SciPy's `savgol_filter` do.
     SavitzkyGolay {
         /// Samples that a polynomial is fitted to; odd.
         span: usize,
-        /// Degree of the polynomial.
+        /// Degree of the polynomial: below the span, and at most 8.
         degree: usize,
     },
 }
@@ -129,41 +128,27 @@ impl Smoothing {
     /// The smoothed `values`.
     ///
     /// # Errors
-    /// Those of [`moving_average`] and [`savitzky_golay`].
+    /// [`RecordError::Options`] for an even span, 0 included, and for a degree that is too high;
+    /// [`RecordError::TooShort`] for fewer values than the span of a polynomial.
     pub fn apply(&self, values: &[f64]) -> Result<Vec<f64>, RecordError> {
         match *self {
             Self::None => Ok(values.to_vec()),
-            Self::MovingAverage { span, ends } => moving_average(values, span, ends),
-            Self::SavitzkyGolay { span, degree } => savitzky_golay(values, span, degree),
-        }
-    }
-
-    /// Samples that one smoothed sample is made of.
-    pub fn span(&self) -> usize {
-        match *self {
-            Self::None => 1,
-            Self::MovingAverage { span, .. } | Self::SavitzkyGolay { span, .. } => span,
+            Self::MovingAverage { span, .. } if span.is_multiple_of(2) => Err(even_span(span)),
+            Self::MovingAverage { span, ends } => Ok(averaged(values, span / 2, ends)),
+            Self::SavitzkyGolay { span, degree } => sliding(values, span, degree, Functional::Value),
         }
     }
 
     /// The derivative of the smoothed `values` per sample; divide by the sampling interval. Averages are differentiated
-    /// by central differences, polynomials as such.
+    /// by central differences, polynomials as such, which is less noisy.
     ///
     /// # Errors
     /// Those of [`Smoothing::apply`], and [`RecordError::TooShort`] below three values.
     pub fn slope(&self, values: &[f64]) -> Result<Vec<f64>, RecordError> {
-        if let Self::SavitzkyGolay { span, degree } = *self {
-            return savitzky_golay_derivative(values, span, degree);
+        match *self {
+            Self::SavitzkyGolay { span, degree } => sliding(values, span, degree, Functional::Slope),
+            _ => central_differences(&self.apply(values)?),
         }
-        central_differences(&self.apply(values)?)
-    }
-
-    /// Standard deviation that white noise of standard deviation 1 is left with away from the ends.
-    ///
-    /// # Errors
-    /// Those of [`Smoothing::apply`].
-    pub fn noise_gain(&self) -> Result<f64, RecordError> {
-        Ok(norm(&self.apply(&self.impulse())?))
     }
 
     /// Standard deviation of the [`slope`](Self::slope) of white noise of standard deviation 1.
@@ -171,39 +156,15 @@ impl Smoothing {
     /// # Errors
     /// Those of [`Smoothing::apply`].
     pub fn slope_noise_gain(&self) -> Result<f64, RecordError> {
-        Ok(norm(&self.slope(&self.impulse())?))
-    }
-
-    /// A unit impulse, so far from both ends that nothing one-sided there sees it.
-    fn impulse(&self) -> Vec<f64> {
-        let reach = self.span() + 3;
+        let span = match *self {
+            Self::None => 1,
+            Self::MovingAverage { span, .. } | Self::SavitzkyGolay { span, .. } => span,
+        };
+        // A unit impulse, so far from both ends that nothing one-sided there sees it.
+        let reach = span + 3;
         let mut impulse = vec![0.0; 2 * reach + 1];
         impulse[reach] = 1.0;
-        impulse
-    }
-}
-
-fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|value| value * value).sum::<f64>().sqrt()
-}
-
-impl Record {
-    /// The record after `smoothing`.
-    ///
-    /// # Errors
-    /// Those of [`Smoothing::apply`].
-    pub fn smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
-        Ok(self.derived(self.start(), smoothing.apply(self.values())?))
-    }
-
-    /// The derivative in time after `smoothing`: as [`Record::differentiate`] with [`Smoothing::slope`].
-    ///
-    /// # Errors
-    /// Those of [`Record::differentiate`] and [`Smoothing::apply`].
-    pub fn differentiate_smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
-        self.quantity().derivative()?;
-        let slope = smoothing.slope(self.values())?;
-        self.with_derivative(slope.into_iter().map(|slope| slope / self.interval()).collect())
+        Ok(self.slope(&impulse)?.iter().map(|slope| slope * slope).sum::<f64>().sqrt())
     }
 }
 
@@ -211,7 +172,12 @@ impl Record {
 mod tests {
     use super::*;
     use crate::numerics::mean;
+    use crate::record::Record;
     use crate::tests::synthetic::Noise;
+
+    fn moving_average(values: &[f64], span: usize, ends: EndRule) -> Result<Vec<f64>, RecordError> {
+        Smoothing::MovingAverage { span, ends }.apply(values)
+    }
 
     /// Both rules, written as their definitions, agree with the running sum to rounding.
     #[test]
@@ -264,13 +230,11 @@ mod tests {
     #[test]
     fn gains_are_those_of_the_weights() {
         let mean = Smoothing::MovingAverage { span: 5, ends: EndRule::Truncated };
-        assert!((mean.noise_gain().unwrap().powi(2) - 0.2).abs() < 1e-15);
         // A difference of two averages over five keeps two samples at either end: 4 · (0.2/2)².
         assert!((mean.slope_noise_gain().unwrap().powi(2) - 0.04).abs() < 1e-15);
         assert!((Smoothing::None.slope_noise_gain().unwrap().powi(2) - 0.5).abs() < 1e-15);
         let polynomial = Smoothing::SavitzkyGolay { span: 5, degree: 2 };
-        // The squared weights of a projection sum to its centre weight, 17/35; (4 + 1 + 1 + 4)/100.
-        assert!((polynomial.noise_gain().unwrap().powi(2) - 17.0 / 35.0).abs() < 1e-12);
+        // Weights of −2, −1, 0, 1 and 2 tenths: (4 + 1 + 1 + 4)/100.
         assert!((polynomial.slope_noise_gain().unwrap().powi(2) - 0.1).abs() < 1e-12);
     }
 

@@ -6,60 +6,20 @@ use crate::error::RecordError;
 /// Highest degree: beyond it the polynomials follow noise, and their products lose the digits of a double.
 const HIGHEST_DEGREE: usize = 8;
 
-/// Savitzky and Golay's filter: each sample becomes the value of a polynomial of `degree` fitted by least squares to
-/// the `span` samples around it.
-///
-/// At the ends, where the window would reach beyond the record, the polynomial of the first (last) full window is
-/// evaluated, as MATLAB's `sgolayfilt` and SciPy's `savgol_filter` do. A polynomial up to the degree passes
-/// unchanged, so peaks lose less than under a moving average of the same span.
-///
-/// ```
-/// use fmm_record::savitzky_golay;
-///
-/// let cubic: Vec<f64> = (0..50).map(|i| f64::from(i).powi(3) - 20.0 * f64::from(i).powi(2)).collect();
-/// let smooth = savitzky_golay(&cubic, 21, 3)?;
-/// assert!(cubic.iter().zip(&smooth).all(|(x, y)| (x - y).abs() < 1e-9));
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-///
-/// # Errors
-/// [`RecordError::Options`] if the span is even, or if it does not exceed the degree or the degree
-/// exceeds 8, [`RecordError::TooShort`] if there are fewer values than the span.
-///
-/// # References
-/// A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of data by simplified least squares procedures",
-/// Anal. Chem. 36 (1964) 1627, <https://doi.org/10.1021/ac60214a047>; P. A. Gorry, Anal. Chem. 62 (1990) 570,
-/// <https://doi.org/10.1021/ac00205a007> (the ends).
-pub fn savitzky_golay(values: &[f64], span: usize, degree: usize) -> Result<Vec<f64>, RecordError> {
-    filtered(values, span, degree, |basis, i| basis.iter().map(|polynomial| polynomial.value[i]).collect())
+/// Number that a window takes from its polynomial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Functional {
+    Value,
+    /// Per sample.
+    Slope,
 }
 
-/// The derivative of the polynomials of [`savitzky_golay`], per sample; divide by the sampling interval.
-///
-/// It differs from the difference of the smoothed values, and is less noisy.
-///
-/// ```
-/// use fmm_record::savitzky_golay_derivative;
-///
-/// let parabola: Vec<f64> = (0..50).map(|i| f64::from(i).powi(2)).collect();
-/// let slope = savitzky_golay_derivative(&parabola, 21, 3)?;
-/// assert!(slope.iter().enumerate().all(|(i, slope)| (slope - 2.0 * i as f64).abs() < 1e-10));
-/// # Ok::<(), fmm_record::RecordError>(())
-/// ```
-///
-/// # Errors
-/// Those of [`savitzky_golay`].
-pub fn savitzky_golay_derivative(values: &[f64], span: usize, degree: usize) -> Result<Vec<f64>, RecordError> {
-    filtered(values, span, degree, |basis, i| basis.iter().map(|polynomial| polynomial.slope[i]).collect())
-}
-
-/// A functional of the fitted polynomials at each sample: `at` gives that of each member of the basis at a position of
-/// the window.
-fn filtered(
+/// A functional at each sample of the polynomials of `degree` that are fitted by least squares to `span` samples.
+pub(super) fn sliding(
     values: &[f64],
     span: usize,
     degree: usize,
-    at: impl Fn(&[Polynomial], usize) -> Vec<f64>,
+    functional: Functional,
 ) -> Result<Vec<f64>, RecordError> {
     if span.is_multiple_of(2) {
         return Err(even_span(span));
@@ -77,8 +37,8 @@ fn filtered(
     let basis = orthonormal_polynomials(span, degree);
     // At position i of the window: Σ_j kernel(i)_j x_j with kernel(i)_j = Σ_k (functional of p_k at i) p_k(j).
     let kernel = |i: usize| -> Vec<f64> {
-        let functional = at(&basis, i);
-        let weight = |j: usize| basis.iter().zip(&functional).map(|(p, share)| share * p.value[j]).sum();
+        let share = |p: &Polynomial| if functional == Functional::Value { p.value[i] } else { p.slope[i] };
+        let weight = |j: usize| basis.iter().map(|p| share(p) * p.value[j]).sum();
         (0..span).map(weight).collect()
     };
     let apply = |kernel: &[f64], window: &[f64]| -> f64 {
@@ -141,6 +101,10 @@ mod tests {
     use super::*;
     use crate::error::says;
 
+    fn savitzky_golay(values: &[f64], span: usize, degree: usize) -> Result<Vec<f64>, RecordError> {
+        sliding(values, span, degree, Functional::Value)
+    }
+
     /// Coefficients of the 1964 paper: (−3, 12, 17, 12, −3)/35 for 5 points and a quadratic or cubic.
     #[test]
     fn impulse_gives_the_published_coefficients() {
@@ -170,7 +134,7 @@ mod tests {
     fn derivative_has_the_published_coefficients() {
         let mut impulse = vec![0.0; 21];
         impulse[10] = 10.0;
-        let slope = savitzky_golay_derivative(&impulse, 5, 2).unwrap();
+        let slope = sliding(&impulse, 5, 2, Functional::Slope).unwrap();
         for (offset, expected) in [(0, 0.0), (1, -1.0), (2, -2.0), (3, 0.0)] {
             assert!((slope[10 + offset] - expected).abs() < 1e-12, "{}", slope[10 + offset]);
             assert!((slope[10 - offset] + expected).abs() < 1e-12, "{}", slope[10 - offset]);

@@ -156,7 +156,7 @@ impl Envelope {
 fn rang(record: &Record, begin: usize, end: usize, whole: f64) -> bool {
     let Ok(part) = record.crop(record.time(begin), record.time(end)) else { return false };
     let swings = Swings::of(&part);
-    let largest = swings.peaks().windows(2).map(|pair| (pair[1].value - pair[0].value).abs()).fold(0.0, f64::max);
+    let largest = swings.heights().into_iter().fold(0.0, f64::max);
     swings.peaks().len() >= FEWEST_PEAKS && largest > LARGE * whole
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::examination::Examination;
-use crate::examination::steadiness::{Steady, steady};
+use crate::examination::steadiness::steady;
 use crate::numerics::line_search::{Candidate, fundamental, lines};
 use crate::numerics::range;
 use crate::record::Record;
@@ -98,22 +98,18 @@ pub(crate) fn hum(examination: &Examination) -> Vec<Hum> {
         let mut candidates: Vec<_> = candidates.filter(|candidate| candidate.amplitude < 2.0 * largest).collect();
         candidates.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
         let allowed = smallest..largest;
-        let is_allowed = |line: &Steady| line.amplitude > 0.0 && allowed.contains(&line.amplitude);
+        let is_allowed = |(line, _): &(Candidate, f64)| line.amplitude > 0.0 && allowed.contains(&line.amplitude);
         let line = candidates.into_iter().find_map(|candidate| steady(&values, candidate).filter(is_allowed));
-        let Some(mut line) = line else { break };
+        let Some((mut line, mut phase)) = line else { break };
         known.push(line.frequency);
         if group > 1.0 {
             // Averages show faster lines at the wrong frequency, where the samples themselves have none.
-            let candidate = Candidate { frequency: line.frequency / group, amplitude: line.amplitude };
+            let candidate = Candidate { frequency: line.frequency / group, ..line };
             let Some(sharper) = steady(record.values(), candidate).filter(is_allowed) else { continue };
-            line = sharper;
+            (line, phase) = sharper;
         }
-        let hum = Hum {
-            frequency: line.frequency / record.interval(),
-            amplitude: line.amplitude,
-            phase: line.phase,
-            start: record.start(),
-        };
+        let (frequency, amplitude) = (line.frequency / record.interval(), line.amplitude);
+        let hum = Hum { frequency, amplitude, phase, start: record.start() };
         found.push(hum);
         for (i, value) in values.iter_mut().enumerate() {
             *value -= hum.at(survey.time(i));

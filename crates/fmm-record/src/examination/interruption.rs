@@ -45,7 +45,7 @@ impl Examination<'_> {
     /// Interruption of a ring-down; `None` if it is free to its end.
     pub fn interruption(&self) -> Option<Interruption> {
         let (record, peaks) = (self.record(), self.swings().peaks());
-        let mut heights: Vec<f64> = peaks.windows(2).map(|pair| (pair[1].value - pair[0].value).abs()).collect();
+        let mut heights = self.swings().heights();
         // What is left of the motion after its last turning point, if the record goes on for a period.
         let (first, last) = (peaks.first()?, peaks.last()?);
         let half_cycle = (last.index - first.index) as f64 / (peaks.len() - 1).max(1) as f64;

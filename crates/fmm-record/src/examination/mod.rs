@@ -23,7 +23,7 @@ use crate::examination::hum::{Hum, hum, without_lines};
 use crate::examination::noise::{noise, quantisation_step};
 use crate::examination::saturation::{Saturation, limits};
 use crate::examination::spikes::{Spike, spikes, without_spikes};
-use crate::examination::swings::{Swings, period_change};
+use crate::examination::swings::Swings;
 use crate::record::Record;
 
 /// Examination of a record, made once and asked by all.
@@ -131,10 +131,10 @@ impl<'a> Examination<'a> {
         without_lines(&self.record, self.hum())
     }
 
-    /// Relative change of the period (1) during the oscillation, if it is significant ([`period_change`]).
+    /// Relative change of the period (1) during the oscillation, if it is significant ([`Swings::period_change`]).
     pub fn period_change(&self) -> Option<f64> {
         let (times, heights) = self.swings().turns(self.record.quantity());
-        period_change(&times, &heights)
+        Swings::period_change(&times, &heights)
     }
 
     /// Step of the converter, 0 if there is none.

@@ -53,7 +53,8 @@ fn noise_by_differences(values: &[f64], order: usize) -> f64 {
     const BLOCK: usize = 128;
     const FEWEST_BLOCKS: usize = 3;
     let Some(count) = values.len().checked_sub(order).filter(|count| *count >= 2) else { return 0.0 };
-    let coefficients = signed_binomials(order);
+    let coefficients: Vec<f64> =
+        (0..=order).map(|k| if k % 2 == 0 { binomial(order, k) } else { -binomial(order, k) }).collect();
     let block = match count {
         0..48 => count,
         48..384 => count / FEWEST_BLOCKS,
@@ -85,10 +86,6 @@ fn noise_by_differences(values: &[f64], order: usize) -> f64 {
 
 fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
-}
-
-fn signed_binomials(order: usize) -> Vec<f64> {
-    (0..=order).map(|k| if k % 2 == 0 { binomial(order, k) } else { -binomial(order, k) }).collect()
 }
 
 /// The step of the lattice on which all of `values` lie, in their unit; `None` if they lie on none.

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::examination::Examination;
 use crate::examination::noise::noise;
+use crate::numerics::least_squares::LeastSquares;
 use crate::numerics::{mean, range};
 use crate::units::Quantity;
 
@@ -206,12 +207,10 @@ fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 
 /// Standard deviation about the line of least squares: slow noise counts, a motion that passes through does not.
 fn scatter_about_line(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let (middle, level) = ((n - 1.0) / 2.0, mean(values));
-    let deviations = || values.iter().enumerate().map(|(i, value)| (i as f64 - middle, value - level));
-    let slope = deviations().map(|(i, y)| i * y).sum::<f64>() * 12.0 / (n * (n * n - 1.0));
-    let squares: f64 = deviations().map(|(i, y)| (y - slope * i).powi(2)).sum();
-    (squares / (n - 2.0)).sqrt()
+    let level = mean(values);
+    let points = values.iter().enumerate().map(|(i, value)| (1.0, value - level, [1.0, i as f64]));
+    let fit = LeastSquares::of(&points.collect::<Vec<_>>());
+    fit.map_or(0.0, |fit| (fit.residual / fit.freedom).sqrt())
 }
 
 /// Standard deviation about `mean`.

@@ -68,7 +68,9 @@ fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
     let on_level = |value: &f64| (value - level).abs() <= rounding;
     let mut count = 0;
     let mut end = 0;
-    let mut tops = Tops::default();
+    // Tops of one or two samples that lie exactly on the level: their samples, and the ways from the level to the mean
+    // of their two neighbours.
+    let (mut in_tops, mut ways) = (0, Vec::new());
     for run in values.chunk_by(|a, b| on_level(a) == on_level(b)) {
         let start = end;
         end += run.len();
@@ -77,7 +79,8 @@ fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
         }
         if run.len() < SHORTEST {
             if let (Some(before), Some(after)) = (start.checked_sub(1).map(|index| values[index]), values.get(end)) {
-                tops.add(run.len(), (f64::midpoint(before, *after) - level).abs());
+                in_tops += run.len();
+                ways.push((f64::midpoint(before, *after) - level).abs());
             }
             continue;
         }
@@ -96,31 +99,10 @@ fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
             count += run.len();
         }
     }
-    count + if tops.are_cut(tolerance.max(10.0 * visible)) { tops.samples } else { 0 }
-}
-
-/// Tops of one or two samples that lie exactly on one level.
-#[derive(Default)]
-struct Tops {
-    count: usize,
-    samples: usize,
-    /// The least and the greatest of the ways from the level to the mean of the two neighbours of a top.
-    ways: Option<(f64, f64)>,
-}
-
-impl Tops {
-    fn add(&mut self, samples: usize, way: f64) {
-        self.count += 1;
-        self.samples += samples;
-        let (least, greatest) = self.ways.unwrap_or((way, way));
-        self.ways = Some((least.min(way), greatest.max(way)));
-    }
-
-    /// True if the motion beside them differs by more than `alike`: their equal tops are then no coincidence.
-    fn are_cut(&self, alike: f64) -> bool {
-        const FEWEST: usize = 3;
-        self.count >= FEWEST && self.ways.is_some_and(|(least, greatest)| greatest - least > alike)
-    }
+    // Where the motion beside them differs, their equal tops are no coincidence.
+    let (least, greatest) = range(&ways);
+    let are_cut = ways.len() >= SHORTEST && greatest - least > tolerance.max(10.0 * visible);
+    count + if are_cut { in_tops } else { 0 }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::examination::Examination;
 use crate::examination::hum::MOST_SAMPLES;
-use crate::examination::swings::period_change;
+use crate::examination::swings::Swings;
 use crate::numerics::least_squares::LeastSquares;
 use crate::numerics::line_search::lines;
 use crate::numerics::spectrum::component;
@@ -110,10 +110,10 @@ impl Motion {
         let peaks = swings.peaks();
         let (first, last) = (peaks.first()?, peaks.last()?);
         let values = examination.bridged().record().values().get(first.index..=last.index)?.to_vec();
-        let heights: Vec<f64> = peaks.windows(2).map(|pair| (pair[1].value - pair[0].value).abs()).collect();
+        let heights = swings.heights();
         let rate = 0.5 * heights.len() as f64 / (last.time - first.time);
         let (times, around) = swings.turns(record.quantity());
-        let warped = period_change(&times, &around).map(|_| {
+        let warped = Swings::period_change(&times, &around).map(|_| {
             let knots: Vec<f64> = times.iter().map(|time| (time - first.time) * record.rate()).collect();
             in_half_cycles(&values, &knots)
         });
@@ -261,8 +261,7 @@ fn trend(heights: &[f64]) -> Option<Vec<f64>> {
         };
         let points: Vec<_> = points(heights, |_, s| [1.0, s, s * s, s * s * s]).into_iter().map(at).collect();
         let fit = LeastSquares::of(&points)?;
-        let value = |functions: &[f64; 4]| functions.iter().zip(&fit.coefficients).map(|(f, c)| f * c).sum::<f64>();
-        let curve: Vec<f64> = points.iter().map(|(_, _, functions)| back(value(functions))).collect();
+        let curve: Vec<f64> = points.iter().map(|(_, _, functions)| back(fit.at(functions))).collect();
         let misfit: f64 = curve.iter().zip(heights).map(|(level, height)| (level - height).powi(2)).sum();
         (misfit.is_finite() && curve.iter().all(|level| *level > 0.02 * mean)).then_some((misfit, curve))
     };

@@ -2,20 +2,10 @@
 
 use std::f64::consts::{LN_2, PI, TAU};
 
+use crate::numerics::least_squares::LeastSquares;
 use crate::numerics::line_search::Candidate;
 use crate::numerics::median;
 use crate::numerics::spectrum::{LOBE, blackman_harris, component};
-
-/// A line that is as large and has the same phase wherever it can be seen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Steady {
-    /// Cycles per sample.
-    pub(crate) frequency: f64,
-    /// In the unit of the values.
-    pub(crate) amplitude: f64,
-    /// Of a cosine at the first sample (rad).
-    pub(crate) phase: f64,
-}
 
 /// Fewest periods of the line in a segment: its lobe stays clear of the offset.
 const PERIODS: f64 = 7.0;
@@ -55,14 +45,15 @@ impl Segment {
     }
 }
 
-/// The line of `candidate` in `values`, if it is steady.
+/// The line of `candidate` in `values`, sharper, and its phase as a cosine at the first sample (rad); `None` unless it
+/// is as large and in phase wherever it can be seen.
 ///
 /// Segments that overlap by a half are looked at. Their background is the median of what they show beside the line.
 /// Wherever that would let the line be seen, it must be there with the same amplitude and in phase, in three segments
 /// at least, one of which lies in the last quarter. What decays, or stops with the motion, fails this. The frequency
 /// is that of the straight line through the phases, which is sharper than 1/duration by about the number of standard
 /// deviations by which the line stands out.
-pub(crate) fn steady(values: &[f64], candidate: Candidate) -> Option<Steady> {
+pub(crate) fn steady(values: &[f64], candidate: Candidate) -> Option<(Candidate, f64)> {
     let segments = segments(values, candidate.frequency)?;
     let visible: Vec<Segment> =
         segments.into_iter().filter(|segment| candidate.amplitude > VISIBLE * segment.scatter).collect();
@@ -78,7 +69,7 @@ pub(crate) fn steady(values: &[f64], candidate: Candidate) -> Option<Steady> {
     }
     let (slope, phase) = in_phase(&visible)?;
     // The amplitude of a segment is that of a line with noise, which is a little more than that of the line.
-    Some(Steady { frequency: candidate.frequency + slope / TAU, amplitude, phase: phase.rem_euclid(TAU) })
+    Some((Candidate { frequency: candidate.frequency + slope / TAU, amplitude }, phase.rem_euclid(TAU)))
 }
 
 /// Amplitudes of the segments at `frequency` (cycles per sample).
@@ -140,12 +131,18 @@ fn weights(segments: &[Segment]) -> impl Iterator<Item = f64> + '_ {
 
 /// True if the amplitudes neither rise nor fall.
 fn is_level(segments: &[Segment], amplitude: f64) -> bool {
-    let weights: Vec<f64> = weights(segments).collect();
-    let points: Vec<(f64, f64)> = segments.iter().map(|segment| (segment.time, segment.amplitude)).collect();
-    let Some(line) = Line::through(&points, &weights) else { return false };
+    let points =
+        weights(segments).zip(segments).map(|(weight, segment)| (weight, segment.amplitude, line(segment.time)));
+    let Some(fit) = LeastSquares::of(&points.collect::<Vec<_>>()) else { return false };
     let span = segments[segments.len() - 1].time - segments[0].time;
-    // Neighbours share half of their samples.
-    (line.slope * span).abs() <= CHANGE * amplitude + SCATTER * 1.2 * line.slope_scatter * span
+    // Neighbours share half of their samples. The weights are inverse variances.
+    let scatter = fit.inverse[1].sqrt();
+    (fit.coefficients[1] * span).abs() <= CHANGE * amplitude + SCATTER * 1.2 * scatter * span
+}
+
+/// Functions of a straight line at a time.
+fn line(time: f64) -> [f64; 2] {
+    [1.0, time]
 }
 
 /// Slope (rad per sample) and intercept (rad) of the straight line through the phases; `None` if they do not lie on
@@ -154,45 +151,19 @@ fn in_phase(segments: &[Segment]) -> Option<(f64, f64)> {
     // From the end, where the motion is smallest, each phase is taken by the whole turn that comes nearest to the
     // line through those after it.
     let weights: Vec<f64> = weights(segments).collect();
-    let (mut points, mut used): (Vec<(f64, f64)>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut points: Vec<(f64, f64, [f64; 2])> = Vec::new();
     for (segment, weight) in segments.iter().zip(&weights).rev() {
         let expected = match points.as_slice() {
             [] => segment.phase,
-            [(_, phase)] | [_, (_, phase)] => *phase,
-            _ => Line::through(&points, &used)?.at(segment.time),
+            [(_, phase, _)] | [_, (_, phase, _)] => *phase,
+            _ => LeastSquares::of(&points)?.at(&line(segment.time)),
         };
         let turns = ((expected - segment.phase) / TAU).round();
-        points.push((segment.time, segment.phase + TAU * turns));
-        used.push(*weight);
+        points.push((*weight, segment.phase + TAU * turns, line(segment.time)));
     }
-    let line = Line::through(&points, &used)?;
-    let on_line = points.iter().zip(segments.iter().rev()).all(|((time, phase), segment)| {
-        (phase - line.at(*time)).abs() <= PHASE + SCATTER * segment.phase_scatter().min(PI / SCATTER)
+    let fit = LeastSquares::of(&points)?;
+    let on_line = points.iter().zip(segments.iter().rev()).all(|((_, phase, functions), segment)| {
+        (phase - fit.at(functions)).abs() <= PHASE + SCATTER * segment.phase_scatter().min(PI / SCATTER)
     });
-    on_line.then(|| (line.slope, line.at(0.0)))
-}
-
-/// A straight line of weighted least squares.
-struct Line {
-    middle: f64,
-    level: f64,
-    slope: f64,
-    /// Standard deviation of the slope, if the weights are inverse variances.
-    slope_scatter: f64,
-}
-
-impl Line {
-    fn through(points: &[(f64, f64)], weights: &[f64]) -> Option<Self> {
-        let weighted = || points.iter().zip(weights);
-        let weight: f64 = weights.iter().sum();
-        let middle = weighted().map(|((t, _), w)| w * t).sum::<f64>() / weight;
-        let level = weighted().map(|((_, y), w)| w * y).sum::<f64>() / weight;
-        let squares: f64 = weighted().map(|((t, _), w)| w * (t - middle).powi(2)).sum();
-        let slope = weighted().map(|((t, y), w)| w * (t - middle) * (y - level)).sum::<f64>() / squares;
-        slope.is_finite().then(|| Self { middle, level, slope, slope_scatter: squares.sqrt().recip() })
-    }
-
-    fn at(&self, time: f64) -> f64 {
-        self.level + self.slope * (time - self.middle)
-    }
+    on_line.then_some((fit.coefficients[1], fit.coefficients[0]))
 }

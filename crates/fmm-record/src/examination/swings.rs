@@ -120,6 +120,11 @@ impl Swings {
         &self.crossings
     }
 
+    /// Heights of the half cycles: from each peak to the next, in the unit of the record.
+    pub(crate) fn heights(&self) -> Vec<f64> {
+        self.peaks.windows(2).map(|pair| (pair[1].value - pair[0].value).abs()).collect()
+    }
+
     /// n, samples to which a turning point or a passage is fitted: those within ±1/12 period, three at least.
     pub fn samples_per_point(samples_per_period: f64) -> f64 {
         (2 * reach(0.5 * samples_per_period) + 1) as f64
@@ -133,19 +138,10 @@ impl Swings {
     /// swings.
     pub fn frequency(&self) -> Option<f64> {
         let first = self.crossings.first()?.time;
-        let weighted = || {
-            self.crossings.iter().zip(self.peaks.windows(2)).enumerate().map(|(k, (crossing, pair))| {
-                let swing = pair[1].value - pair[0].value;
-                (swing * swing, k as f64, crossing.time - first)
-            })
-        };
-        let (w, wk, wt) = weighted().fold((0.0, 0.0, 0.0), |sum, (w, k, t)| (sum.0 + w, sum.1 + w * k, sum.2 + w * t));
-        let (mean_k, mean_t) = (wk / w, wt / w);
-        let (kk, kt) = weighted().fold((0.0, 0.0), |sum, (w, k, t)| {
-            let (k, t) = (k - mean_k, t - mean_t);
-            (sum.0 + w * k * k, sum.1 + w * k * t)
-        });
-        (kt > 0.0).then(|| kk / (2.0 * kt))
+        let points = self.crossings.iter().zip(self.heights()).enumerate();
+        let points = points.map(|(k, (crossing, height))| (height * height, crossing.time - first, [1.0, k as f64]));
+        let [_, half_period] = LeastSquares::of(&points.collect::<Vec<_>>())?.coefficients;
+        (half_period > 0.0).then(|| 0.5 / half_period)
     }
 }
 
@@ -337,81 +333,78 @@ const PARTS: usize = 6;
 /// statrs would be the only dependency of the crate for one quantile.
 const STUDENT: [f64; 12] = [636.6, 31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59, 4.44, 4.32];
 
-/// Relative change of the period (1) from the first sixth of the turning points to the last; `None` if it is not
-/// significant, or less than half a percent, which is more than a good spring shows, and (Λ/π)². A pendulum, a spring
-/// that stiffens, and a contact that creeps before it slides have one. (Λ is the logarithm of the ratio of the first
-/// two swings. Viscous damping makes periods longer by (Λ/π)²/2; if it grows with the speed, that changes during the
-/// decay.)
-///
-/// `times` (s) are those at which the velocity changes its sign: neither viscous damping nor dry friction changes the
-/// time between two of them. `swings` are the heights of the half cycles there, in the unit of the record: noise shifts
-/// a turn in inverse proportion. [`Swings::turns`](crate::Swings::turns) gives both. With s from −1 at the first turn k
-/// = 0 to 1 at the last,
-///
-/// ```text
-/// t = c₀ + c₁ s + c₂ s² + c₃ (−1)ᵏ
-/// ```
-///
-/// is fitted by least squares with the weights swing². The term c₃ takes up a wrong offset, by which half periods
-/// are long and short by turns. The change is significant if the one that c₂ gives, less the quantile of Student's t
-/// that noise exceeds in one record of a thousand times its standard uncertainty, still exceeds these limits: so a
-/// record without a change raises an alarm less than once in a thousand. (Of 6400 simulated decays with dry friction,
-/// damping, white noise, drift and hum none did.) The last turn, after which the motion may stop, is left out, and
-/// eight are needed.
-///
-/// ```
-/// use fmm_record::period_change;
-///
-/// // The half period rises from 0.201 s between the first two turns to 0.219 s.
-/// let turns = |curve: f64| (0..12).map(|k| f64::from(k) * (0.2 + curve * f64::from(k))).collect::<Vec<_>>();
-/// let swings = [1.0; 12];
-/// assert_eq!(period_change(&turns(0.0), &swings), None);
-/// let change = period_change(&turns(1e-3), &swings).unwrap();
-/// assert!((change - 0.079).abs() < 0.001);
-/// ```
-pub fn period_change(times: &[f64], swings: &[f64]) -> Option<f64> {
-    let count = times.len().min(swings.len()).saturating_sub(1);
-    if count < FEWEST {
-        return None;
-    }
-    let middle = (count - 1) as f64 / 2.0;
-    let points: Vec<_> = (0..count)
-        .map(|k| {
-            let s = (k as f64 - middle) / middle;
-            let side = if k % 2 == 0 { 1.0 } else { -1.0 };
-            (swings[k] * swings[k], times[k] - times[0], [1.0, s, s * s, side])
-        })
-        .collect();
-    let fit = LeastSquares::of(&points)?;
-    let curve = fit.coefficients[2];
-    let freedom = fit.freedom as usize;
-    // From thirteen degrees of freedom on by the first terms of the expansion about the quantile of the normal
-    // distribution.
-    let student = STUDENT.get(freedom - 1).copied().unwrap_or(3.29 * (1.0 + 3.0 / fit.freedom));
-    let loss = 0.5 * (swings[0] / swings[2]).ln() / PI;
-    let least = LARGE + loss * loss;
-    // From each turn to the next but one, so that an offset does not make periods alternate.
-    let some = ((count - 2) / PARTS).max(1);
-    let between_means = 2.0 - 2.0 * (some + 1) as f64 / (count - 1) as f64;
-    let sure = 2.0 * between_means * (curve.abs() - student * fit.scatter(2)) / fit.coefficients[1];
-    if !(sure > least) {
-        return None;
-    }
-    let mean = |turns: &[f64]| (turns[some + 1] + turns[some] - turns[1] - turns[0]) / (2 * some) as f64;
-    let (early, late) = (mean(times), mean(&times[count - 2 - some..count]));
-    let change = (late - early) / early;
-    (early > 0.0 && change * curve > 0.0 && change.abs() > least).then_some(change)
-}
-
 impl Swings {
+    /// Relative change of the period (1) from the first sixth of the turning points to the last; `None` if it is not
+    /// significant, or less than half a percent, which is more than a good spring shows, and (Λ/π)². A pendulum, a
+    /// spring that stiffens, and a contact that creeps before it slides have one. (Λ is the logarithm of the ratio of
+    /// the first two swings. Viscous damping makes periods longer by (Λ/π)²/2; if it grows with the speed, that changes
+    /// during the decay.)
+    ///
+    /// `times` t (s) and `heights` are those of [`turns`](Self::turns): neither viscous damping nor dry friction
+    /// changes the time between two of them. Noise shifts a turn in inverse proportion to the height. With s from −1 at
+    /// the first turn k = 0 to 1 at the last,
+    ///
+    /// ```text
+    /// t = c₀ + c₁ s + c₂ s² + c₃ (−1)ᵏ
+    /// ```
+    ///
+    /// is fitted by least squares with the weights height². The term c₃ takes up a wrong offset, by which half periods
+    /// are long and short by turns. The change is significant if the one that c₂ gives, less the quantile of Student's
+    /// t that noise exceeds in one record of a thousand times its standard uncertainty, still exceeds these limits: so
+    /// a record without a change raises an alarm less than once in a thousand. (Of 6400 simulated decays with dry
+    /// friction, damping, white noise, drift and hum none did.) The last turn, after which the motion may stop, is left
+    /// out, and eight are needed.
+    ///
+    /// ```
+    /// use fmm_record::Swings;
+    ///
+    /// // The half period rises from 0.201 s between the first two turns to 0.219 s.
+    /// let turns = |curve: f64| (0..12).map(|k| f64::from(k) * (0.2 + curve * f64::from(k))).collect::<Vec<_>>();
+    /// assert_eq!(Swings::period_change(&turns(0.0), &[1.0; 12]), None);
+    /// let change = Swings::period_change(&turns(1e-3), &[1.0; 12]).unwrap();
+    /// assert!((change - 0.079).abs() < 0.001);
+    /// ```
+    pub fn period_change(times: &[f64], heights: &[f64]) -> Option<f64> {
+        let count = times.len().min(heights.len()).saturating_sub(1);
+        if count < FEWEST {
+            return None;
+        }
+        let middle = (count - 1) as f64 / 2.0;
+        let points: Vec<_> = (0..count)
+            .map(|k| {
+                let s = (k as f64 - middle) / middle;
+                let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+                (heights[k] * heights[k], times[k] - times[0], [1.0, s, s * s, side])
+            })
+            .collect();
+        let fit = LeastSquares::of(&points)?;
+        let curve = fit.coefficients[2];
+        let freedom = fit.freedom as usize;
+        // From thirteen degrees of freedom on by the first terms of the expansion about the quantile of the normal
+        // distribution.
+        let student = STUDENT.get(freedom - 1).copied().unwrap_or(3.29 * (1.0 + 3.0 / fit.freedom));
+        let loss = 0.5 * (heights[0] / heights[2]).ln() / PI;
+        let least = LARGE + loss * loss;
+        // From each turn to the next but one, so that an offset does not make periods alternate.
+        let some = ((count - 2) / PARTS).max(1);
+        let between_means = 2.0 - 2.0 * (some + 1) as f64 / (count - 1) as f64;
+        let sure = 2.0 * between_means * (curve.abs() - student * fit.scatter(2)) / fit.coefficients[1];
+        if !(sure > least) {
+            return None;
+        }
+        let mean = |turns: &[f64]| (turns[some + 1] + turns[some] - turns[1] - turns[0]) / (2 * some) as f64;
+        let (early, late) = (mean(times), mean(&times[count - 2 - some..count]));
+        let change = (late - early) / early;
+        (early > 0.0 && change * curve > 0.0 && change.abs() > least).then_some(change)
+    }
+
     /// Times (s) at which the velocity changes its sign, in a record of `quantity`, and the height of the half cycle
     /// around each, in the unit of the record: peaks of a displacement, crossings of anything else.
     pub fn turns(&self, quantity: Quantity) -> (Vec<f64>, Vec<f64>) {
-        let heights = self.peaks().windows(2).map(|pair| (pair[1].value - pair[0].value).abs());
+        let heights = self.heights();
         if quantity != Quantity::Displacement {
-            return (self.crossings().iter().map(|crossing| crossing.time).collect(), heights.collect());
+            return (self.crossings().iter().map(|crossing| crossing.time).collect(), heights);
         }
-        let heights: Vec<f64> = heights.collect();
         let around = |k: usize| heights[k.saturating_sub(1)..heights.len().min(k + 1)].iter().copied();
         let heights = (0..self.peaks().len()).map(|k| around(k).fold(f64::INFINITY, f64::min)).collect();
         (self.peaks().iter().map(|peak| peak.time).collect(), heights)
@@ -585,7 +578,7 @@ mod tests {
 
     fn of(record: &Record) -> Option<f64> {
         let (times, heights) = Swings::of(record).turns(record.quantity());
-        period_change(&times, &heights)
+        Swings::period_change(&times, &heights)
     }
 
     #[test]
@@ -626,7 +619,7 @@ mod tests {
                     swings.push(swing);
                     time += 0.4 * (1.0 - 0.12 * part);
                 }
-                let change = period_change(&times, &swings);
+                let change = Swings::period_change(&times, &swings);
                 assert!(change.is_some_and(|change| (-0.14..-0.05).contains(&change)), "{count}: {change:?}");
             }
         }
@@ -671,10 +664,10 @@ mod tests {
 
     #[test]
     fn few_turns_or_nonsense_have_none() {
-        assert_eq!(period_change(&[], &[]), None);
-        assert_eq!(period_change(&[1.0; 20], &[1.0; 20]), None);
-        assert_eq!(period_change(&[f64::NAN; 20], &[0.0; 20]), None);
+        assert_eq!(Swings::period_change(&[], &[]), None);
+        assert_eq!(Swings::period_change(&[1.0; 20], &[1.0; 20]), None);
+        assert_eq!(Swings::period_change(&[f64::NAN; 20], &[0.0; 20]), None);
         let times: Vec<f64> = (0..7).map(|k| f64::from(k * k)).collect();
-        assert_eq!(period_change(&times, &[1.0; 7]), None);
+        assert_eq!(Swings::period_change(&times, &[1.0; 7]), None);
     }
 }

@@ -28,15 +28,13 @@ const ROUNDING: f64 = 1e-9;
 impl Examination<'_> {
     /// Held or interpolated samples; `None` if each sample may have been measured.
     pub fn upsampling(&self) -> Option<Upsampling> {
-        let record = self.record();
-        let values = record.values();
+        let values = self.record().values();
         // Two identical values say nothing about what lies between them.
         let change = |i: usize| (values[i] - values[i - 1]).abs();
         let bend = |i: usize| (values[i + 1] - 2.0 * values[i] + values[i - 1]).abs();
         let held = factor(values.len(), change).map(|found| (found, false));
-        let (found, is_interpolated) =
-            held.or_else(|| factor(values.len().saturating_sub(1), bend).map(|found| (found, true)))?;
-        let (factor, first) = found;
+        let interpolated = || factor(values.len().saturating_sub(1), bend).map(|found| (found, true));
+        let ((factor, first), is_interpolated) = held.or_else(interpolated)?;
         Some(Upsampling { factor, first, is_interpolated })
     }
 }

@@ -76,20 +76,32 @@ pub struct Channel {
     pub rate: Option<f64>,
 }
 
-impl DataFile {
-    pub(super) fn open(reader: Reader, path: &Path) -> Result<Self, RecordError> {
+impl Reader {
+    /// Opens the file at `path`.
+    ///
+    /// # Errors
+    /// [`RecordError::Io`], otherwise as [`Reader::parse`].
+    pub fn open(&self, path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
+        let path = path.as_ref();
         let failed = |source| RecordError::io("read", path, source);
         let mut file = File::open(path).map_err(failed)?;
         let mut bytes = Vec::new();
         file.by_ref().take(HEAD as u64).read_to_end(&mut bytes).map_err(failed)?;
         if matches!(Format::of(&bytes), Ok(Format::Text)) {
-            return Self { reader, format: Format::Text, content: Content::Text(Source::Path(path.into())) }.checked();
+            return self.checked(Format::Text, Content::Text(Source::Path(path.into())));
         }
         file.read_to_end(&mut bytes).map_err(failed)?;
-        Self::parse(reader, bytes)
+        self.parse(bytes)
     }
 
-    pub(super) fn parse(reader: Reader, bytes: Vec<u8>) -> Result<Self, RecordError> {
+    /// Opens the bytes of a file.
+    ///
+    /// # Errors
+    /// [`RecordError::UnknownFormat`] and [`RecordError::MissingFeature`] for the format; [`RecordError::Damaged`] and
+    /// [`RecordError::Unsupported`] for the file as a whole; [`RecordError::Options`] for an option that the format
+    /// itself decides. A fault of a channel is an error only when the channel is asked for.
+    pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
+        let bytes = bytes.into();
         let format = Format::of(&bytes[..bytes.len().min(HEAD)])?;
         let content = match format {
             Format::Text => Content::Text(Source::Bytes(bytes)),
@@ -103,20 +115,19 @@ impl DataFile {
             #[cfg(not(all(feature = "hdf5", feature = "npy")))]
             _ => return Err(format.missing()),
         };
-        Self { reader, format, content }.checked()
+        self.checked(format, content)
     }
 
-    /// Refuses options that the format itself decides.
-    fn checked(self) -> Result<Self, RecordError> {
-        let Reader { separator, skip, time, rate, .. } = &self.reader;
-        let is_universal = self.format == Format::Universal;
+    /// The open file; refuses options that the format itself decides.
+    fn checked(&self, format: Format, content: Content) -> Result<DataFile, RecordError> {
+        let Self { separator, skip, time, rate, .. } = self;
+        let is_universal = format == Format::Universal;
         if is_universal && (time.is_some() || rate.is_some()) {
             return Err(RecordError::options(
                 "a Universal File states its own sampling; leave out the rate and the time",
             ));
         }
-        if self.format != Format::Text && (separator.is_some() || *skip > 0) {
-            let format = self.format;
+        if format != Format::Text && (separator.is_some() || *skip > 0) {
             return Err(RecordError::options(format!(
                 "the file is of format {format}, and no text: leave out the separator and the lines to skip"
             )));
@@ -124,9 +135,11 @@ impl DataFile {
         if time.is_some() && rate.is_some() {
             return Err(RecordError::options("both time stamps and a rate were given; give one of them"));
         }
-        Ok(self)
+        Ok(DataFile { reader: self.clone(), format, content })
     }
+}
 
+impl DataFile {
     /// The format, as the content tells it.
     pub fn format(&self) -> Format {
         self.format

@@ -167,24 +167,6 @@ impl Reader {
         self
     }
 
-    /// Opens the file at `path`.
-    ///
-    /// # Errors
-    /// [`RecordError::Io`], otherwise as [`Reader::parse`].
-    pub fn open(&self, path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
-        DataFile::open(self.clone(), path.as_ref())
-    }
-
-    /// Opens the bytes of a file.
-    ///
-    /// # Errors
-    /// [`RecordError::UnknownFormat`] and [`RecordError::MissingFeature`] for the format; [`RecordError::Damaged`] and
-    /// [`RecordError::Unsupported`] for the file as a whole; [`RecordError::Options`] for an option that the format
-    /// itself decides. A fault of a channel is an error only when the channel is asked for.
-    pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
-        DataFile::parse(self.clone(), bytes.into())
-    }
-
     /// Reads the channel from the file at `path`: [`Reader::open`] and [`DataFile::reading`].
     ///
     /// # Errors

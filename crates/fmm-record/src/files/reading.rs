@@ -1,8 +1,5 @@
 //! A reading: the record, and the choices in the file that led to it.
 
-use std::convert::Infallible;
-use std::str::FromStr;
-
 use crate::error::RecordError;
 use crate::record::Record;
 use crate::sampling::Sampling;
@@ -122,14 +119,6 @@ impl From<&str> for Column {
 impl From<usize> for Column {
     fn from(index: usize) -> Self {
         Self::Index(index)
-    }
-}
-
-impl FromStr for Column {
-    type Err = Infallible;
-
-    fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(Self::from(text))
     }
 }
 

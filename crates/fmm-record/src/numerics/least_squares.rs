@@ -16,7 +16,7 @@ pub(crate) struct LeastSquares<const P: usize> {
 impl<const P: usize> LeastSquares<P> {
     /// The fit of points, each its weight, its value and the functions there; `None` if they do not determine it.
     pub(crate) fn of(points: &[(f64, f64, [f64; P])]) -> Option<Self> {
-        let freedom = points.len().checked_sub(P).filter(|freedom| *freedom > 0)? as f64;
+        let freedom = points.len().checked_sub(P)? as f64;
         // The normal equations with the right hand side and a unit matrix behind, reduced by Gauss and Jordan.
         let mut left = [[0.0; P]; P];
         let mut right = [0.0; P];
@@ -53,10 +53,15 @@ impl<const P: usize> LeastSquares<P> {
                 right[other] -= factor * right[i];
             }
         }
-        let fitted = |functions: &[f64; P]| functions.iter().zip(&right).map(|(f, c)| f * c).sum::<f64>();
-        let residual = points.iter().map(|(weight, value, f)| weight * (value - fitted(f)).powi(2)).sum();
         let inverse = std::array::from_fn(|i| inverse[i][i]);
-        Some(Self { coefficients: right, inverse, residual, freedom })
+        let mut fit = Self { coefficients: right, inverse, residual: 0.0, freedom };
+        fit.residual = points.iter().map(|(weight, value, f)| weight * (value - fit.at(f)).powi(2)).sum();
+        Some(fit)
+    }
+
+    /// The fitted value where the functions are these.
+    pub(crate) fn at(&self, functions: &[f64; P]) -> f64 {
+        functions.iter().zip(&self.coefficients).map(|(f, c)| f * c).sum()
     }
 
     /// Standard deviation of a coefficient, by the residuals.
@@ -79,7 +84,10 @@ mod tests {
         assert!((fit.coefficients[0] - 2.0).abs() < 1e-12 && (fit.coefficients[1] - 3.0).abs() < 1e-12);
         // Σ r² = 1 with a weight of 2; s² = 1/2, Σ (t − 1.5)² = 5.
         assert!((fit.residual - 2.0).abs() < 1e-12 && (fit.scatter(1) - 0.1f64.sqrt()).abs() < 1e-12);
-        assert_eq!(LeastSquares::of(&points[..2]), None);
+        // Two points determine a line, without a scatter.
+        let exact = LeastSquares::of(&points[..2]).unwrap();
+        assert_eq!((exact.coefficients, exact.residual, exact.freedom), ([1.5, 4.0], 0.0, 0.0));
+        assert_eq!(LeastSquares::of(&points[..1]), None);
         assert_eq!(LeastSquares::of(&[(1.0, 1.0, [1.0, 1.0]); 5]), None);
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::LN_2;
 use std::ops::Range;
 
 use crate::numerics::median;
-use crate::numerics::spectrum::{LOBE, Spectrum, blackman_harris};
+use crate::numerics::spectrum::{LOBE, Spectrum};
 
 /// A line as a part of a record shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +47,7 @@ pub(crate) fn lines(values: &[f64], part: Range<usize>, fundamental: f64, known:
         return Vec::new();
     }
     let duration = values.len() as f64;
-    let spectrum = Spectrum::of(values, &blackman_harris(values.len()));
+    let spectrum = Spectrum::of(values);
     let index = |cycles: f64| (cycles / spectrum.spacing).round().max(0.0) as usize;
     let squares = &spectrum.squares;
     let (lowest, highest) = (index(LOWEST), squares.len().saturating_sub(1 + index(LOBE)));
@@ -95,7 +95,7 @@ pub(crate) fn fundamental(values: &[f64]) -> f64 {
     let falling: Vec<f64> =
         (0..values.len()).map(|i| (0.5 * std::f64::consts::PI * (i as f64 + 0.5) / duration).cos().powi(2)).collect();
     let rising: Vec<f64> = falling.iter().rev().copied().collect();
-    let (early, late) = (Spectrum::of(values, &falling), Spectrum::of(values, &rising));
+    let (early, late) = (Spectrum::under(&falling, values), Spectrum::under(&rising, values));
     let change = |k: &usize| (early.squares[*k] - late.squares[*k]).abs() * *k as f64;
     let most = (0..early.squares.len()).max_by(|a, b| change(a).total_cmp(&change(b)));
     most.unwrap_or(0) as f64 * early.spacing / duration

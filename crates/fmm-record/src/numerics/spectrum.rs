@@ -66,15 +66,13 @@ impl RealTransform {
         spectrum: &mut Vec<Complex64>,
         scratch: &mut Vec<Complex64>,
     ) -> Result<(), RecordError> {
-        let wrong_length = |samples: &[f64]| {
-            RecordError::options(format!("a transform of {} samples was given {}", self.length(), samples.len()))
-        };
-        if samples.len() != self.length() {
-            return Err(wrong_length(samples));
-        }
+        let given = samples.len();
         spectrum.resize(self.lines(), Complex64::default());
         scratch.resize(self.plan.get_scratch_len(), Complex64::default());
-        self.plan.process_with_scratch(samples, spectrum, scratch).map_err(|_| wrong_length(samples))
+        // Spectrum and scratch have the right lengths.
+        self.plan
+            .process_with_scratch(samples, spectrum, scratch)
+            .map_err(|_| RecordError::options(format!("a transform of {} samples was given {given}", self.length())))
     }
 }
 
@@ -96,12 +94,7 @@ pub(crate) const LOBE: f64 = 4.0;
 ///
 /// F. J. Harris, On the use of windows for harmonic analysis with the discrete Fourier transform, Proceedings of the
 /// IEEE 66 (1978), table 1. Its side lobes lie 92 dB below a line, so that a motion does not hide a hum.
-///
-/// ```
-/// let window = fmm_record::blackman_harris(8);
-/// assert!(window[0] < 0.01 && window[4] > 0.9 && window[0] == window[7]);
-/// ```
-pub fn blackman_harris(length: usize) -> Vec<f64> {
+pub(crate) fn blackman_harris(length: usize) -> Vec<f64> {
     const A: [f64; 4] = [0.358_75, 0.488_29, 0.141_28, 0.011_68];
     let at = |i: usize| {
         // cos 2φ = 2 c² − 1 and cos 3φ = 4 c³ − 3 c cost a third of three cosines.
@@ -114,11 +107,11 @@ pub fn blackman_harris(length: usize) -> Vec<f64> {
 /// Squared amplitudes of the frequencies from 0 to half the rate in windowed values.
 ///
 /// ```
-/// use fmm_record::{Spectrum, blackman_harris};
+/// use fmm_record::Spectrum;
 /// use std::f64::consts::TAU;
 ///
 /// let values: Vec<f64> = (0..1000).map(|i| 3.0 * (TAU * 0.0503 * f64::from(i)).cos()).collect();
-/// let spectrum = Spectrum::of(&values, &blackman_harris(values.len()));
+/// let spectrum = Spectrum::of(&values);
 /// let squares = &spectrum.squares;
 /// let k = (0..squares.len()).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).unwrap();
 /// assert!((spectrum.refined(k) - 50.3).abs() < 0.01 && (squares[k].sqrt() - 3.0).abs() < 0.1);
@@ -132,8 +125,15 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// The spectrum of `values` less their mean, under the window of Blackman and Harris with four terms: side lobes
+    /// lie
+    /// 92 dB below a line.
+    pub fn of(values: &[f64]) -> Self {
+        Self::under(&blackman_harris(values.len()), values)
+    }
+
     /// The spectrum of `values` less their mean, times `window`, which has their length.
-    pub fn of(values: &[f64], window: &[f64]) -> Self {
+    pub(crate) fn under(window: &[f64], values: &[f64]) -> Self {
         let length = (2 * values.len().max(1)).next_power_of_two().max(4);
         let sum: f64 = window.iter().sum();
         let weighted: f64 = values.iter().zip(window).map(|(y, w)| y * w).sum();
@@ -183,7 +183,7 @@ mod tests {
             let at = 40.3;
             let values: Vec<f64> =
                 (0..length).map(|i| 1e3 + 2.0 * (TAU * at * f64::from(i) / f64::from(length) + 1.0).cos()).collect();
-            let spectrum = Spectrum::of(&values, &blackman_harris(values.len()));
+            let spectrum = Spectrum::of(&values);
             let k = (0..spectrum.squares.len())
                 .max_by(|a, b| spectrum.squares[*a].total_cmp(&spectrum.squares[*b]))
                 .unwrap();
@@ -202,7 +202,7 @@ mod tests {
         let mut random = crate::tests::synthetic::Noise::new(3);
         let values: Vec<f64> = (0..4000).map(|_| random.normal()).collect();
         let window = blackman_harris(values.len());
-        let spectrum = Spectrum::of(&values, &window);
+        let spectrum = Spectrum::under(&window, &values);
         let mean = spectrum.squares.iter().sum::<f64>() / spectrum.squares.len() as f64;
         let (sum, squares): (f64, f64) = window.iter().fold((0.0, 0.0), |sum, w| (sum.0 + w, sum.1 + w * w));
         // Of 2000 independent squares the mean is good to 1/√2000.

@@ -34,7 +34,7 @@ pub struct Label {
     name: String,
     unit: Written,
     stated: Option<Quantity>,
-    word: Word,
+    pub(super) word: Word,
 }
 
 /// The unit that is written.
@@ -95,28 +95,13 @@ impl Label {
     }
 
     /// The quantity that has this unit, if the unit shows it.
-    pub fn quantity_of_unit(&self) -> Option<Quantity> {
+    pub(super) fn quantity_of_unit(&self) -> Option<Quantity> {
         self.unit().and_then(WrittenUnit::shown_quantity)
     }
 
     /// The quantity that the file states beside the name.
     pub fn stated_quantity(&self) -> Option<Quantity> {
         self.stated
-    }
-
-    /// The quantity that a word names which is no sensor and no symbol.
-    pub(crate) fn named_quantity(&self) -> Option<Quantity> {
-        self.word.quantity.filter(|_| !self.word.is_sensor)
-    }
-
-    /// True if a word means rotation.
-    pub fn is_angular(&self) -> bool {
-        self.word.is_angular
-    }
-
-    /// True if SI units without an angle would be a guess: the name has a word for rotation or for a sensor.
-    pub(crate) fn needs_unit(&self) -> bool {
-        self.word.is_angular || self.word.is_sensor
     }
 }
 

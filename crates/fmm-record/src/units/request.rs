@@ -115,8 +115,8 @@ impl Request {
             return Err(RecordError::contradiction(what, remedy));
         }
         // A declared quantity stands above a word in a name, but not above the statement of the format.
-        let named = || label.named_quantity().filter(|_| self.declared_quantity().is_none());
-        let stated = label.stated_quantity().or_else(named);
+        let is_named = !label.word.is_sensor && self.declared_quantity().is_none();
+        let stated = label.stated_quantity().or(label.word.quantity.filter(|_| is_named));
         if let Some(stated) = stated.filter(|stated| *stated != quantity) {
             let unit = (self.quantity.is_none() && of_unit.is_some()).then_some(unit);
             return Err(other_statement(label, stated, unit, quantity));
@@ -176,8 +176,9 @@ impl Request {
         if let Some(stated) = label.stated_quantity().filter(|stated| *stated != quantity) {
             return Err(other_statement(label, stated, None, quantity));
         }
-        let likely = unit_of_motion(quantity, label.is_angular()).unwrap_or("N");
-        if self.quantity.is_none() || label.needs_unit() {
+        let likely = unit_of_motion(quantity, label.word.is_angular).unwrap_or("N");
+        // Behind a word for rotation or for a sensor, SI units without an angle would be a guess.
+        if self.quantity.is_none() || label.word.is_angular || label.word.is_sensor {
             let what = format!("channel \"{channel}\" is a record of {quantity}, but its unit is written nowhere");
             let remedy = format!("give `unit`, such as {likely}, and `scale` if the numbers are not in it");
             return Err(RecordError::unclear(what, remedy));
@@ -197,32 +198,22 @@ impl Request {
         let alike = |is_meant: &dyn Fn(&Label) -> bool| -> Vec<usize> {
             labels.iter().enumerate().filter(|(_, label)| is_meant(label)).map(|(index, _)| index).collect()
         };
-        let by_unit = |quantity| alike(&|label: &Label| label.quantity_of_unit() == Some(quantity));
-        let by_word = |quantity| alike(&|label: &Label| label.quantity() == Some(quantity));
         // With a scale, the declared unit is not that of the file.
-        let same_unit = || match (&self.unit, self.scale) {
+        let same_unit = match (&self.unit, self.scale) {
             (Some(wanted), None) => alike(&|label: &Label| label.unit().is_some_and(|unit| unit.is_same_as(wanted))),
             _ => Vec::new(),
         };
-        let is_open = |label: &Label| label.quantity().is_none();
-        let mut found = if labels.len() == 1 { vec![0] } else { same_unit() };
-        if found.len() > 1 {
-            found.clear();
-        }
-        let wanted = match declared {
-            Some(declared) => vec![declared],
-            None => vec![Quantity::Velocity, Quantity::Displacement],
+        let wanted = declared.map_or(vec![Quantity::Velocity, Quantity::Displacement], |declared| vec![declared]);
+        let by = |quantity_of: fn(&Label) -> Option<Quantity>| {
+            let of = move |quantity: &Quantity| alike(&|label: &Label| quantity_of(label) == Some(*quantity));
+            wanted.iter().map(of).find(|found| !found.is_empty())
         };
-        for by in [&by_unit as &dyn Fn(Quantity) -> Vec<usize>, &by_word] {
-            for quantity in &wanted {
-                if found.is_empty() {
-                    found = by(*quantity);
-                }
-            }
-        }
-        if found.is_empty() && declared.is_some() {
-            found = alike(&is_open);
-        }
+        let open = || alike(&|label: &Label| declared.is_some() && label.quantity().is_none());
+        let found = match same_unit.len() {
+            _ if labels.len() == 1 => vec![0],
+            1 => same_unit,
+            _ => by(Label::quantity_of_unit).or_else(|| by(Label::quantity)).unwrap_or_else(open),
+        };
         let [index] = found[..] else {
             let wanted = declared.map_or("motion".into(), |declared| declared.to_string());
             let channels = labels.iter().map(Label::to_string).collect::<Vec<_>>().join(", ");

@@ -1,6 +1,6 @@
 //! Program A2: the logarithmic decrement as the thesis' appendix codes it.
 
-use fmm_record::{EndRule, Record, moving_average};
+use fmm_record::{EndRule, Record, Smoothing};
 
 use crate::Found;
 
@@ -37,7 +37,7 @@ pub(super) fn cycles(record: &Record) -> Found<Vec<Cycle>> {
     let values = record.values();
     // MATLAB's `find(v == max(v))` gives the first of equal maxima.
     let first = values.iter().enumerate().fold(0, |best, (i, value)| if *value > values[best] { i } else { best });
-    let smooth = moving_average(&values[first..], SPAN, EndRule::Truncated)?;
+    let smooth = Smoothing::MovingAverage { span: SPAN, ends: EndRule::Truncated }.apply(&values[first..])?;
     let maxima = local_maxima(&smooth).into_iter().skip(DROPPED).filter(|index| smooth[*index] > 0.0);
     let mut previous: Option<usize> = None;
     let peaks: Vec<f64> = maxima

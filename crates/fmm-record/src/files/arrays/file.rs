@@ -5,8 +5,7 @@ use crate::files::Reader;
 use crate::files::arrays::{Array, Notation, Series, Slice};
 use crate::files::clock::{Clock, are_whole, stated};
 use crate::files::reading::{Column, Reading, only, without_unit};
-use crate::sampling::{Sampling, UniformTimes};
-use crate::units::Quantity;
+use crate::sampling::{Sampling, uniform_grid};
 
 /// All real numeric arrays of a file, and what else it holds.
 #[derive(Debug, Clone)]
@@ -123,16 +122,16 @@ impl ArrayFile {
             if is_stated { None } else { around().map(|time| Slice::of(time, Series::Whole)) }
         });
         let (record, sampling) = if let Some(rate) = reader.rate {
-            (reader.span.sampled(rate, values, Quantity::Other, "")?, Sampling::Given { rate })
+            (reader.span.sampled(rate, values)?, Sampling::Given { rate })
         } else if let Some(time) = &time {
             let mut times = self.numbers(time)?.1;
             let name = time.written(self.notation);
             // The name of a matrix is not that of its first series.
             let clock = if time.series == Series::Whole { Clock::of(leaf(&time.array)) } else { Clock::nameless() };
             clock.to_seconds(&name, false, &mut times)?;
-            (reader.span.timed(&times, values, Quantity::Other, "")?, Sampling::Times { name })
+            (reader.span.timed(&times, values)?, Sampling::Times { name })
         } else if let Some((rate, sampling)) = stated(self.scalars(array))? {
-            (reader.span.sampled(rate, values, Quantity::Other, "")?, sampling)
+            (reader.span.sampled(rate, values)?, sampling)
         } else {
             let there = self.listing();
             return Err(RecordError::time(
@@ -234,7 +233,7 @@ fn parent(name: &str) -> &str {
 }
 
 fn is_uniform(array: &Array, series: Series) -> bool {
-    array.series(series).is_some_and(|times| UniformTimes::of(&times).is_ok())
+    array.series(series).is_some_and(|times| uniform_grid(&times).is_ok())
 }
 
 /// True for a series that is time by nature: uniform, and no count of samples.

@@ -11,10 +11,8 @@ pub(crate) use file::ArrayFile;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Notation {
     /// `m(2,:)` is the second row; columns are stored one after the other.
-    #[cfg(feature = "mat")]
     Matlab,
     /// `m[1]` is the second row; rows are stored one after the other.
-    #[cfg(feature = "npy")]
     Numpy,
 }
 
@@ -83,22 +81,11 @@ impl Array {
             let is_first = matches!(series, Series::Whole | Series::Row(0) | Series::Column(0));
             return (is_series && is_first).then(|| self.values.clone());
         };
-        let is_there = match series {
-            Series::Whole => false,
-            Series::Row(row) => row < rows,
-            Series::Column(column) => column < columns,
-        };
-        let (first, step, count) = match (series, self.notation) {
-            (Series::Whole, _) => return None,
-            _ if !is_there => return None,
-            #[cfg(feature = "mat")]
-            (Series::Row(row), Notation::Matlab) => (row, rows, columns),
-            #[cfg(feature = "mat")]
-            (Series::Column(column), Notation::Matlab) => (column * rows, 1, rows),
-            #[cfg(feature = "npy")]
-            (Series::Row(row), Notation::Numpy) => (row * columns, 1, columns),
-            #[cfg(feature = "npy")]
-            (Series::Column(column), Notation::Numpy) => (column, columns, rows),
+        let (down, across) = if self.notation == Notation::Matlab { (1, rows) } else { (columns, 1) };
+        let (first, step, count) = match series {
+            Series::Row(row) if row < rows => (row * down, across, columns),
+            Series::Column(column) if column < columns => (column * across, down, rows),
+            _ => return None,
         };
         Some(self.values.iter().skip(first).step_by(step).take(count).copied().collect())
     }
@@ -108,9 +95,7 @@ impl Array {
 impl std::fmt::Display for Array {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let between = match self.notation {
-            #[cfg(feature = "mat")]
             Notation::Matlab => "×",
-            #[cfg(feature = "npy")]
             Notation::Numpy => ", ",
         };
         let size = self.shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(between);
@@ -152,13 +137,10 @@ impl Slice {
     pub(crate) fn parse(text: &str, notation: Notation) -> Self {
         let text = text.trim();
         let indexed = match notation {
-            #[cfg(feature = "mat")]
             Notation::Matlab => text.strip_suffix(')').and_then(|rest| rest.rsplit_once('(')),
-            #[cfg(feature = "npy")]
             Notation::Numpy => text.strip_suffix(']').and_then(|rest| rest.split_once('[')),
         };
         let series = indexed.and_then(|(_, index)| match index.split_once(',') {
-            #[cfg(feature = "npy")]
             None if notation == Notation::Numpy => from_zero(index, notation).map(Series::Row),
             None => None,
             Some((row, column)) if row.trim() == ":" => from_zero(column, notation).map(Series::Column),
@@ -176,13 +158,9 @@ impl Slice {
         let name = &self.array;
         match (self.series, notation) {
             (Series::Whole, _) => name.clone(),
-            #[cfg(feature = "mat")]
             (Series::Row(row), Notation::Matlab) => format!("{name}({},:)", row.wrapping_add(1)),
-            #[cfg(feature = "mat")]
             (Series::Column(column), Notation::Matlab) => format!("{name}(:,{})", column.wrapping_add(1)),
-            #[cfg(feature = "npy")]
             (Series::Row(row), Notation::Numpy) => format!("{name}[{row}]"),
-            #[cfg(feature = "npy")]
             (Series::Column(column), Notation::Numpy) => format!("{name}[:,{column}]"),
         }
     }
@@ -192,12 +170,7 @@ impl Slice {
 /// an array has.
 fn from_zero(number: &str, notation: Notation) -> Option<usize> {
     let number = number.trim().parse::<usize>().ok()?;
-    Some(match notation {
-        #[cfg(feature = "mat")]
-        Notation::Matlab => number.wrapping_sub(1),
-        #[cfg(feature = "npy")]
-        Notation::Numpy => number,
-    })
+    Some(if notation == Notation::Matlab { number.wrapping_sub(1) } else { number })
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@
 
 use std::ops::Range;
 
-use super::lines::Line;
 use crate::error::RecordError;
 
 /// Separator between the fields of a line.
@@ -91,14 +90,14 @@ pub(super) enum Kind {
 
 /// A line and its fields.
 pub(super) struct Row<'a> {
-    line: &'a Line,
+    line: &'a [u8],
     fields: Vec<Range<usize>>,
 }
 
 impl<'a> Row<'a> {
-    pub(super) fn of(line: &'a Line, separator: Separator) -> Self {
+    pub(super) fn of(line: &'a [u8], separator: Separator) -> Self {
         let mut fields = Vec::new();
-        split(&line.text, separator, &mut fields);
+        split(line, separator, &mut fields);
         Self { line, fields }
     }
 
@@ -107,7 +106,7 @@ impl<'a> Row<'a> {
     }
 
     pub(super) fn field(&self, column: usize) -> &'a [u8] {
-        self.fields.get(column).map_or(&[], |range| &self.line.text[range.clone()])
+        self.fields.get(column).map_or(&[], |range| &self.line[range.clone()])
     }
 }
 

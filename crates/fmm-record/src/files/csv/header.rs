@@ -3,7 +3,7 @@
 use super::lines::Line;
 use crate::error::RecordError;
 use crate::files::clock::Clock;
-use crate::files::csv::fields::{Kind, Row, Separator, not_a_number, number, ragged, split, text};
+use crate::files::csv::fields::{Kind, Row, Separator, not_a_number, number, ragged, text};
 use crate::units::{WrittenUnit, seconds_in};
 
 /// Lines above a table.
@@ -15,6 +15,13 @@ pub(super) struct Header {
     pub(super) bare: Vec<String>,
     /// Numbers that are stated by a name.
     pub(super) stated: Vec<(String, f64)>,
+}
+
+impl Header {
+    /// The header of columns with these names and no units.
+    fn named(self, names: Vec<String>) -> Self {
+        Self { names: names.clone(), bare: names, ..self }
+    }
 }
 
 /// Reads the lines above the table; its names do not stand before line `begin`, and `row` is its first row.
@@ -33,19 +40,15 @@ pub(super) fn header(
     let Some(last) = above.len().checked_sub(1).filter(|last| *last >= begin) else {
         let comment = row.and_then(|row| row.comment.as_deref());
         let names = comment.and_then(|comment| names_in(comment, columns, separator));
-        found.bare = names.unwrap_or_else(|| positions(width));
-        found.names.clone_from(&found.bare);
-        return Ok(found);
+        return Ok(found.named(names.unwrap_or_else(|| positions(width))));
     };
     let Some(names) = fitting(last) else {
-        let fields = Row::of(&above[last], separator).len();
+        let fields = Row::of(&above[last].text, separator).len();
         if let (Some(row), true) = (row, fields > 1) {
             return Err(ragged(row.number, fields, width, separator));
         }
         // The end of a preamble.
-        found.bare = positions(width);
-        found.names.clone_from(&found.bare);
-        return Ok(found);
+        return Ok(found.named(positions(width)));
     };
     let is_number = |column: &usize| number(names[*column].as_bytes(), separator).is_some();
     let mut numbers = (0..width).filter(|column| columns[*column] == Kind::Number);
@@ -55,17 +58,11 @@ pub(super) fn header(
         if let (Some(column), Some(line)) = (first.filter(|first| names[*first].is_empty()), above.get(last)) {
             return Err(not_a_number(line.number, &column.to_string(), ""));
         }
-        found.bare = positions(width);
-        found.names.clone_from(&found.bare);
-        return Ok(found);
+        return Ok(found.named(positions(width)));
     }
     let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named, separator));
-    found.bare = named.unwrap_or_default();
-    if found.bare.is_empty() {
-        found.bare = names;
-        found.names.clone_from(&found.bare);
-        return Ok(found);
-    }
+    let Some(named) = named else { return Ok(found.named(names)) };
+    found.bare = named;
     for (name, unit) in found.bare.iter().zip(&names) {
         // An oscilloscope states the increment of its first column there.
         if let Some((value, _)) = number(unit.as_bytes(), separator) {
@@ -82,7 +79,7 @@ fn positions(width: usize) -> Vec<String> {
 
 /// A name and the number behind it on the same line.
 fn statement(line: &Line, separator: Separator) -> Option<(String, f64)> {
-    let row = Row::of(line, separator);
+    let row = Row::of(&line.text, separator);
     let (value, _) = (1..row.len()).find_map(|column| number(row.field(column), separator))?;
     let name = text(row.field(0)).trim_end_matches([':', '=']).trim().to_owned();
     // A third field may be a unit, which must be that of a time or a rate.
@@ -99,9 +96,8 @@ fn fitted(line: &[u8], columns: &[Kind], separator: Separator) -> Option<Vec<Str
     let mut fields = match separator {
         Separator::Blanks => aligned_names(line, width),
         Separator::Sign(_) => {
-            let mut ranges = Vec::new();
-            split(line, separator, &mut ranges);
-            ranges.into_iter().map(|range| text(&line[range])).collect()
+            let row = Row::of(line, separator);
+            (0..row.len()).map(|column| text(row.field(column))).collect()
         }
     };
     // LabVIEW names a column of comments that most rows do not have; others end every line with a separator.

@@ -29,7 +29,7 @@ impl Layout {
             Some(separator) => separator,
             None => likely_separator(body)?,
         };
-        let rows: Vec<Row> = body.iter().map(|line| Row::of(line, separator)).collect();
+        let rows: Vec<Row> = body.iter().map(|line| Row::of(&line.text, separator)).collect();
         let width = usual_width(&rows);
         let columns = kinds(&rows, width, separator);
         let first = first_row(&rows, &columns, separator);
@@ -98,7 +98,7 @@ fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
         return Ok(Separator::Sign(sign));
     }
     let are_aligned = |line: &Line| {
-        let row = Row::of(line, Separator::Blanks);
+        let row = Row::of(&line.text, Separator::Blanks);
         row.len() > 1 && (0..row.len()).all(|column| number(row.field(column), Separator::Blanks).is_some())
     };
     if last().all(are_aligned) {

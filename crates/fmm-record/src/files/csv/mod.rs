@@ -25,8 +25,7 @@ use crate::files::Reader;
 use crate::files::clock::{Clock, counter, stated};
 use crate::files::csv::table::Table;
 use crate::files::reading::{Reading, quoted};
-use crate::sampling::{Sampling, UniformTimes};
-use crate::units::Quantity;
+use crate::sampling::{Sampling, uniform_grid};
 
 impl Reader {
     /// Reads one channel of the text in `input`, which is buffered here.
@@ -53,30 +52,48 @@ impl Reader {
         let other = channel.or_else(|| (0..columns.len()).find(is_other));
         let may_be_time = Clock::of(&columns[first]).may_be_time();
         let is_settled = channel.is_some() && self.rate.is_some();
-        let series = match (time, other, rate) {
+        match (time, other, rate) {
             (Some(time), None, _) => {
                 let time = &columns[time];
                 let what = format!("the file has only the time column \"{time}\", and no other to read");
-                return Err(RecordError::channel(what));
+                Err(RecordError::channel(what))
             }
-            (Some(time), Some(channel), Some(rate)) => {
-                Series::of(channel, table.read_columns([channel])?).at(rate).beside(time)
+            (Some(_), Some(channel), Some(rate)) => {
+                let [values] = table.read_columns([channel])?;
+                self.reading(columns, time, channel, values, Scale::Rate(rate))
             }
-            (Some(time), Some(channel), None) => {
-                let [times, values] = table.read_columns([time, channel])?;
-                Series::of(channel, [values]).timed(time, false, times)
+            (Some(stamps), Some(channel), None) => {
+                let [times, values] = table.read_columns([stamps, channel])?;
+                let is_by_nature = false;
+                self.reading(columns, time, channel, values, Scale::Times { times, is_by_nature })
             }
             (None, Some(second), rate) if may_be_time && !is_settled && second != first => {
-                let both = table.read_columns([first, second])?;
-                by_nature(&columns, [first, second], both, rate, channel.is_some())?
+                let [times, values] = table.read_columns([first, second])?;
+                let clock = Clock::of(&columns[first]);
+                let is_uniform = uniform_grid(&times).is_ok();
+                let counts = clock.is_counter || (is_uniform && clock.counts(&times));
+                // The first column is time if it increases uniformly and does not count.
+                let time = (is_uniform && !counts).then_some(first);
+                match rate {
+                    Some(rate) if time.is_none() || self.rate.is_some() => {
+                        let is_second = time.is_some() || counts || channel.is_some();
+                        let (channel, values) = if is_second { (second, values) } else { (first, times) };
+                        self.reading(columns, time, channel, values, Scale::Rate(rate))
+                    }
+                    _ if time.is_some() => {
+                        self.reading(columns, time, second, values, Scale::Times { times, is_by_nature: true })
+                    }
+                    _ if counts => Err(counter(&columns[first])),
+                    _ => Err(no_rate(&columns)),
+                }
             }
             (None, _, Some(rate)) => {
                 let channel = channel.unwrap_or(first);
-                Series::of(channel, table.read_columns([channel])?).at(rate)
+                let [values] = table.read_columns([channel])?;
+                self.reading(columns, None, channel, values, Scale::Rate(rate))
             }
-            (None, _, None) => return Err(no_rate(&columns)),
-        };
-        self.reading(series, columns)
+            (None, _, None) => Err(no_rate(&columns)),
+        }
     }
 
     /// The columns of text that can be the channel, by position counted from 0 and name: all but the time. Beyond the
@@ -94,7 +111,7 @@ impl Reader {
             Some(time) => Some(time),
             None if columns.len() > 1 && Clock::of(&columns[first]).may_be_time() => {
                 // Text or gaps are no time either.
-                table.read_columns([first]).ok().filter(|[times]| UniformTimes::of(times).is_ok()).map(|_| first)
+                table.read_columns([first]).ok().filter(|[times]| uniform_grid(times).is_ok()).map(|_| first)
             }
             _ => None,
         };
@@ -103,20 +120,34 @@ impl Reader {
         Ok(columns.into_iter().enumerate().filter(is_channel).collect())
     }
 
-    fn reading(&self, series: Series, columns: Vec<String>) -> Result<Reading, RecordError> {
-        let Series { time, channel, values, scale } = series;
+    /// The reading of the `values` of column `channel` beside column `time`.
+    fn reading(
+        &self,
+        columns: Vec<String>,
+        time: Option<usize>,
+        channel: usize,
+        values: Vec<f64>,
+        scale: Scale,
+    ) -> Result<Reading, RecordError> {
         let (time, channel) = (time.map(|index| columns[index].clone()), columns[channel].clone());
-        let (record, sampling) = match (scale, &time) {
-            (Some(Scale::Rate(rate, sampling)), _) => (self.span.sampled(rate, values, Quantity::Other, "")?, sampling),
-            (Some(Scale::Times(by_nature, mut times)), Some(name)) => {
-                Clock::of(name).to_seconds(name, by_nature, &mut times)?;
-                let record = self.span.timed(&times, values, Quantity::Other, "")?;
-                (record, Sampling::Times { name: name.clone() })
+        let (record, sampling) = match scale {
+            Scale::Rate((rate, sampling)) => (self.span.sampled(rate, values)?, sampling),
+            Scale::Times { mut times, is_by_nature } => {
+                let name = time.clone().unwrap_or_default();
+                Clock::of(&name).to_seconds(&name, is_by_nature, &mut times)?;
+                (self.span.timed(&times, values)?, Sampling::Times { name })
             }
-            _ => return Err(no_rate(&columns)),
         };
         Ok(Reading { record, channel, time, columns, sampling })
     }
+}
+
+/// Scale of the time of a channel.
+enum Scale {
+    /// The rate (Hz), and its source.
+    Rate((f64, Sampling)),
+    /// Time stamps; by nature only if nothing calls them so.
+    Times { times: Vec<f64>, is_by_nature: bool },
 }
 
 /// Neither a time column nor a rate.
@@ -133,63 +164,4 @@ fn time_by_name(columns: &[String], channel: Option<usize>) -> Option<usize> {
         others.find(|(_, name)| is_time(&Clock::of(name))).map(|(index, _)| index)
     };
     first(Clock::is_known_time).or_else(|| first(|clock| clock.is_time))
-}
-
-/// The series of a table in which no column says that it is time: the first one is, if it increases uniformly and does
-/// not count. `rate` is that which is given or stated above the table; `is_chosen` tells whether the second column is
-/// the channel in any case.
-fn by_nature(
-    columns: &[String],
-    [first, second]: [usize; 2],
-    [times, values]: [Vec<f64>; 2],
-    rate: Option<(f64, Sampling)>,
-    is_chosen: bool,
-) -> Result<Series, RecordError> {
-    let clock = Clock::of(&columns[first]);
-    let is_uniform = UniformTimes::of(&times).is_ok();
-    let counts = clock.is_counter || (is_uniform && clock.counts(&times));
-    let is_time = is_uniform && !counts;
-    let is_given = matches!(rate, Some((_, Sampling::Given { .. })));
-    match rate {
-        Some(rate) if is_given || !is_time => Ok(match is_time || counts || is_chosen {
-            true if is_time => Series::of(second, [values]).at(rate).beside(first),
-            true => Series::of(second, [values]).at(rate),
-            false => Series::of(first, [times]).at(rate),
-        }),
-        _ if is_time => Ok(Series::of(second, [values]).timed(first, true, times)),
-        _ if counts => Err(counter(&columns[first])),
-        _ => Err(no_rate(columns)),
-    }
-}
-
-/// The columns in use, the numbers of the channel, and what scales its time.
-struct Series {
-    time: Option<usize>,
-    channel: usize,
-    values: Vec<f64>,
-    scale: Option<Scale>,
-}
-
-enum Scale {
-    Rate(f64, Sampling),
-    /// Time stamps, and whether they are such by nature only.
-    Times(bool, Vec<f64>),
-}
-
-impl Series {
-    fn of(channel: usize, [values]: [Vec<f64>; 1]) -> Self {
-        Self { time: None, channel, values, scale: None }
-    }
-
-    fn at(self, (rate, sampling): (f64, Sampling)) -> Self {
-        Self { scale: Some(Scale::Rate(rate, sampling)), ..self }
-    }
-
-    fn timed(self, time: usize, by_nature: bool, times: Vec<f64>) -> Self {
-        Self { time: Some(time), scale: Some(Scale::Times(by_nature, times)), ..self }
-    }
-
-    fn beside(self, time: usize) -> Self {
-        Self { time: Some(time), ..self }
-    }
 }

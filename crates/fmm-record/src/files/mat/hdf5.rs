@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use hdf5_pure::{AttrValue, DType, Dataset, Error, File, FormatError, Group, Layout};
 
-use super::Class;
 use crate::error::RecordError;
 use crate::files::arrays::{ArrayFile, Notation};
+use crate::files::mat::class;
 use crate::files::reading::{MOST_INFLATED, too_large};
 
 /// Most bytes that one byte of deflated data can expand to (RFC 1951: 258 bytes for two bits).
@@ -45,8 +45,8 @@ impl Variables<'_> {
             let name = format!("{prefix}{name}");
             let dataset = dataset.map_err(decoder);
             match dataset.and_then(|dataset| variable(&dataset, self.bytes.len() as u64, &mut self.budget)) {
-                Ok(Variable::Array { dimensions, values }) => self.file.add(name, dimensions, values),
-                Ok(Variable::Other(kind)) => self.file.others.push((name, kind.to_string())),
+                Ok(Ok((dimensions, values))) => self.file.add(name, dimensions, values),
+                Ok(Err(kind)) => self.file.others.push((name, kind.to_string())),
                 Err(error) => self.file.damaged.push((name, error)),
             }
         }
@@ -55,13 +55,13 @@ impl Variables<'_> {
             let name = format!("{prefix}{name}");
             match group.attrs() {
                 Ok(attributes) if attributes.contains_key("MATLAB_sparse") => {
-                    self.file.others.push((name, Class::Sparse.to_string()));
+                    self.file.others.push((name, class::SPARSE.to_string()));
                 }
                 Ok(_) if depth == DEEPEST => {
                     self.file.damaged.push((name, RecordError::damaged("its groups are too deep")));
                 }
                 Ok(_) => match self.add(&group, &format!("{name}."), depth + 1) {
-                    Ok(()) => self.file.others.push((name, Class::Structure.to_string())),
+                    Ok(()) => self.file.others.push((name, class::STRUCTURE.to_string())),
                     Err(error) => self.file.damaged.push((name, decoder(error))),
                 },
                 Err(error) => self.file.damaged.push((name, decoder(error))),
@@ -118,10 +118,8 @@ fn names(bytes: &[u8]) -> BTreeSet<String> {
     names.filter_map(|name| std::str::from_utf8(name).ok().map(str::to_owned)).collect()
 }
 
-enum Variable {
-    Array { dimensions: Vec<usize>, values: Vec<f64> },
-    Other(Class),
-}
+/// Dimensions and numbers of an array, or the class of another variable.
+type Variable = Result<(Vec<usize>, Vec<f64>), &'static str>;
 
 /// Error of the decoder about a variable.
 fn decoder(error: hdf5_pure::Error) -> RecordError {
@@ -133,7 +131,7 @@ fn variable(dataset: &Dataset, length: u64, budget: &mut u64) -> Result<Variable
     let attributes = dataset.attrs().map_err(decoder)?;
     let stored = dataset.dtype().map_err(decoder)?;
     if let Some(kind) = kind(attributes.get("MATLAB_class").and_then(AttrValue::as_str), &stored) {
-        return Ok(Variable::Other(kind));
+        return Ok(Err(kind));
     }
     let sizes = dataset.shape().map_err(decoder)?;
     let count = sizes.iter().try_fold(1u64, |product, size| product.checked_mul(*size));
@@ -155,14 +153,13 @@ fn variable(dataset: &Dataset, length: u64, budget: &mut u64) -> Result<Variable
         // An empty array stores its dimensions instead of its numbers.
         let dimensions: Vec<usize> = values.iter().map(|size| *size as usize).collect();
         let empty = dimensions.len() >= 2 && dimensions.contains(&0);
-        let array = Variable::Array { dimensions, values: Vec::new() };
         let not_empty = "it is called empty, but has dimensions that are not";
-        return if empty { Ok(array) } else { Err(RecordError::damaged(not_empty)) };
+        return if empty { Ok(Ok((dimensions, Vec::new()))) } else { Err(RecordError::damaged(not_empty)) };
     }
     // HDF5 names the dimension first that varies last; MATLAB stores columns one after the other.
     let mut dimensions: Vec<usize> = sizes.iter().rev().map(|size| *size as usize).collect();
     dimensions.resize(dimensions.len().max(2), 1);
-    Ok(Variable::Array { dimensions, values })
+    Ok(Ok((dimensions, values)))
 }
 
 /// Refuses data that the file cannot hold.
@@ -194,24 +191,24 @@ fn check_storage(dataset: &Dataset, sizes: &[u64], bytes: u64, length: u64) -> R
 
 /// Class of a variable by its MATLAB class, or, in a file of another program, by its stored type; `None` if
 /// it is real and numeric.
-fn kind(class: Option<&str>, stored: &DType) -> Option<Class> {
+fn kind(class: Option<&str>, stored: &DType) -> Option<&'static str> {
     use DType::{
         Compound, F32, F64, I8, I16, I32, I64, ObjectReference, String, U8, U16, U32, U64, VariableLengthString,
     };
     match class {
-        Some("char") => return Some(Class::Text),
-        Some("cell") => return Some(Class::Cell),
-        Some("struct") => return Some(Class::Structure),
+        Some("char") => return Some(class::TEXT),
+        Some("cell") => return Some(class::CELL),
+        Some("struct") => return Some(class::STRUCTURE),
         None | Some("double" | "single" | "logical") => {}
         Some(class) if class.strip_prefix('u').unwrap_or(class).starts_with("int") => {}
-        Some(_) => return Some(Class::Object),
+        Some(_) => return Some(class::OBJECT),
     }
     match stored {
         F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64 => None,
-        Compound(fields) if fields.iter().map(|(name, _)| &name[..]).eq(["real", "imag"]) => Some(Class::Complex),
-        Compound(_) => Some(Class::Structure),
-        String | VariableLengthString => Some(Class::Text),
-        ObjectReference => Some(Class::Cell),
-        _ => Some(Class::Object),
+        Compound(fields) if fields.iter().map(|(name, _)| &name[..]).eq(["real", "imag"]) => Some(class::COMPLEX),
+        Compound(_) => Some(class::STRUCTURE),
+        String | VariableLengthString => Some(class::TEXT),
+        ObjectReference => Some(class::CELL),
+        _ => Some(class::OBJECT),
     }
 }

@@ -38,41 +38,25 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
     Ok(file)
 }
 
-/// Class of a variable that is not a real numeric array.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Class {
-    Cell,
-    Structure,
+/// Classes of variables that are not real numeric arrays.
+pub(super) mod class {
+    pub(crate) const CELL: &str = "a cell array";
+    pub(crate) const STRUCTURE: &str = "a structure";
     /// An object, a function or another thing of MATLAB's own.
-    Object,
-    Text,
-    Sparse,
-    Complex,
-}
+    pub(crate) const OBJECT: &str = "an object";
+    pub(crate) const TEXT: &str = "text";
+    pub(crate) const SPARSE: &str = "a sparse matrix";
+    pub(crate) const COMPLEX: &str = "complex";
 
-impl Class {
-    /// The kind of a class of arrays by its number; `None` for the numeric classes, 6 to 15.
-    pub(super) fn of(class: u32) -> Option<Self> {
-        match class {
-            1 => Some(Self::Cell),
-            2 => Some(Self::Structure),
-            4 => Some(Self::Text),
-            5 => Some(Self::Sparse),
+    /// The class by its number; `None` for the numeric classes, 6 to 15.
+    pub(crate) fn of(number: u32) -> Option<&'static str> {
+        match number {
+            1 => Some(CELL),
+            2 => Some(STRUCTURE),
+            4 => Some(TEXT),
+            5 => Some(SPARSE),
             6..=15 => None,
-            _ => Some(Self::Object),
+            _ => Some(OBJECT),
         }
-    }
-}
-
-impl std::fmt::Display for Class {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Cell => "a cell array",
-            Self::Structure => "a structure",
-            Self::Object => "an object",
-            Self::Text => "text",
-            Self::Sparse => "a sparse matrix",
-            Self::Complex => "complex",
-        })
     }
 }

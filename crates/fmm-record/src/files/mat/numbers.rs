@@ -2,7 +2,7 @@
 
 use crate::error::RecordError;
 use crate::files::arrays::ArrayFile;
-use crate::files::mat::Class;
+use crate::files::mat::class;
 use crate::files::mat::element::{MATRIX, place};
 use crate::files::number::{ByteOrder, Kind, Number};
 
@@ -37,9 +37,9 @@ fn take_apart(
         return Err("its flags are not what flags must be");
     };
     let word = order.unsigned(word) as u32;
-    let kind = Class::of(word & 0xFF);
+    let kind = class::of(word & 0xFF);
     // MATLAB's own objects have a name right behind the flags, and no dimensions.
-    let dimensions: Vec<usize> = if kind == Some(Class::Object) && parts.peek_code() == Some(INT8) {
+    let dimensions: Vec<usize> = if kind == Some(class::OBJECT) && parts.peek_code() == Some(INT8) {
         Vec::new()
     } else {
         let part = parts.next().ok_or("it has no dimensions")?;
@@ -56,7 +56,7 @@ fn take_apart(
     if name.is_empty() {
         return Ok(());
     }
-    let kind = kind.or((word & COMPLEX != 0).then_some(Class::Complex));
+    let kind = kind.or((word & COMPLEX != 0).then_some(class::COMPLEX));
     let Some(kind) = kind else {
         match numbers(&mut parts, &dimensions) {
             Ok(values) => found.add(name, dimensions, values),
@@ -64,7 +64,7 @@ fn take_apart(
         }
         return Ok(());
     };
-    if kind == Class::Structure
+    if kind == class::STRUCTURE
         && let Err(what) = fields(&mut parts, &dimensions, &name, depth, found)
     {
         found.damaged.push((name, RecordError::damaged(what)));

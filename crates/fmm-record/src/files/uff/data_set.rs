@@ -18,7 +18,6 @@ pub struct DataSet {
     pub header: Header,
     abscissa: Abscissa,
     ordinate: Ordinate,
-    precision: Precision,
 }
 
 /// Abscissa of a function.
@@ -59,18 +58,8 @@ impl Ordinate {
     }
 }
 
-/// The precision in which values stand in the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Precision {
-    /// 32 bits; six digits in text.
-    Single,
-    /// 64 bits; 13 digits in text.
-    #[default]
-    Double,
-}
-
 impl DataSet {
-    /// A function in double precision.
+    /// A function of as many abscissae as ordinates.
     ///
     /// # Errors
     /// [`RecordError::Values`] without points, [`RecordError::Options`] for other numbers of abscissae than of
@@ -88,11 +77,11 @@ impl DataSet {
                 let (abscissae, ordinates) = (values.len(), ordinate.len());
                 Err(RecordError::options(format!("{abscissae} abscissae were given for {ordinates} ordinates")))
             }
-            _ => Ok(Self { header, abscissa, ordinate, precision: Precision::Double }),
+            _ => Ok(Self { header, abscissa, ordinate }),
         }
     }
 
-    /// A record over time, in double precision, without a description or a place.
+    /// A record over time, without a description or a place.
     pub fn of_record(record: &Record) -> Self {
         let header = Header {
             function: FunctionType::TIME_RESPONSE,
@@ -104,15 +93,7 @@ impl DataSet {
             header,
             abscissa: Abscissa::Even { start: record.start(), step: record.interval() },
             ordinate: Ordinate::Real(record.values().to_vec()),
-            precision: Precision::Double,
         }
-    }
-
-    /// The same function, to be written in another precision.
-    #[must_use]
-    pub fn with_precision(mut self, precision: Precision) -> Self {
-        self.precision = precision;
-        self
     }
 
     /// Abscissa of its points, as the file states it.
@@ -123,11 +104,6 @@ impl DataSet {
     /// Its values.
     pub fn ordinate(&self) -> &Ordinate {
         &self.ordinate
-    }
-
-    /// The precision in which its values stand in the file.
-    pub fn precision(&self) -> Precision {
-        self.precision
     }
 
     /// Number of points; at least one.
@@ -192,20 +168,20 @@ impl DataSet {
             let name = self.name();
             RecordError::time(None, format!("the time axis of \"{name}\" is in \"{unit}\"; known are s, ms, µs and ns"))
         })?;
-        let (values, quantity) = (values.clone(), header.ordinate.data_type.quantity());
-        let unit = header.ordinate.unit.clone();
-        Ok(match self.abscissa() {
+        let values = values.clone();
+        let (record, sampling) = match self.abscissa() {
             Abscissa::Even { start, step } => {
                 let interval = if has_six_digits(*step) { whole_hertz(step * second) } else { step * second };
-                let record = span.record(start * second, interval, values, quantity, unit)?;
-                (record, Sampling::Header { interval: step * second, rate: interval.recip() })
+                let sampling = Sampling::Header { interval: step * second, rate: interval.recip() };
+                (span.record(start * second, interval, values)?, sampling)
             }
             Abscissa::Uneven(times) => {
                 let times: Vec<f64> = times.iter().map(|time| time * second).collect();
-                let record = span.timed(&times, values, quantity, unit)?;
-                (record, Sampling::Times { name: header.abscissa.label.clone() })
+                (span.timed(&times, values)?, Sampling::Times { name: header.abscissa.label.clone() })
             }
-        })
+        };
+        let axis = &header.ordinate;
+        Ok((record.with_quantity(axis.data_type.quantity()).with_unit(&*axis.unit), sampling))
     }
 }
 
@@ -215,14 +191,6 @@ fn has_six_digits(number: f64) -> bool {
 }
 
 impl UffFile {
-    /// The record in the data set called `channel`, as [`DataSet::name`] calls it, or at that position.
-    ///
-    /// # Errors
-    /// [`RecordError::Channel`], otherwise as [`DataSet::record`].
-    pub fn channel(&self, channel: impl Into<Column>) -> Result<Reading, RecordError> {
-        self.part(Some(&channel.into()), Span::default())
-    }
-
     /// The part within `span` of a channel, or else of the only record over time.
     pub(crate) fn part(&self, channel: Option<&Column>, span: Span) -> Result<Reading, RecordError> {
         let Some(channel) = channel else { return self.reading_of(self.only_over_time()?, span) };
@@ -230,14 +198,7 @@ impl UffFile {
         self.reading_of(only(&channel.among(&[&names]), channel, "data set", &names)?, span)
     }
 
-    /// The only record over time in the file.
-    ///
-    /// # Errors
-    /// [`RecordError::Channel`] if there are none or several, otherwise as [`DataSet::record`].
-    pub fn reading(&self) -> Result<Reading, RecordError> {
-        self.part(None, Span::default())
-    }
-
+    /// Position of the only record over time in the file.
     fn only_over_time(&self) -> Result<usize, RecordError> {
         let over_time: Vec<usize> = (0..self.sets().len()).filter(|index| self.sets()[*index].is_over_time()).collect();
         if let [index] = over_time[..] {

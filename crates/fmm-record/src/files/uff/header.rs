@@ -99,20 +99,8 @@ impl FunctionType {
     pub const GENERAL: Self = Self(0);
     /// A record over time.
     pub const TIME_RESPONSE: Self = Self(1);
-    /// Auto spectrum.
-    pub const AUTO_SPECTRUM: Self = Self(2);
-    /// Cross spectrum.
-    pub const CROSS_SPECTRUM: Self = Self(3);
     /// Frequency response function.
     pub const FREQUENCY_RESPONSE: Self = Self(4);
-    /// Transmissibility.
-    pub const TRANSMISSIBILITY: Self = Self(5);
-    /// Coherence.
-    pub const COHERENCE: Self = Self(6);
-    /// Power spectral density.
-    pub const POWER_SPECTRAL_DENSITY: Self = Self(9);
-    /// Spectrum.
-    pub const SPECTRUM: Self = Self(12);
 
     /// Names in the order of their numbers, from 0 on.
     const NAMES: &str = "\

@@ -44,7 +44,7 @@ use crate::files::uff::points::{Encoding, binary, text};
 use crate::files::uff::records::shown;
 
 pub use crate::files::number::ByteOrder;
-pub use data_set::{Abscissa, DataSet, Ordinate, Precision};
+pub use data_set::{Abscissa, DataSet, Ordinate};
 pub use header::{Axis, DataType, Freedom, FunctionType, Header};
 pub use writer::{Form, write, write_to};
 
@@ -85,10 +85,17 @@ impl UffFile {
             if line.text.trim_ascii().is_empty() {
                 continue;
             }
-            match Identifier::of(&line).filter(|_| after_delimiter) {
-                Some(identifier) => {
+            match identifier(&line).filter(|_| after_delimiter) {
+                Some((58, is_binary)) => {
                     any = true;
-                    file.take(&identifier, &line, &mut lines)?;
+                    file.take(is_binary, &line, &mut lines)?;
+                }
+                Some((number, _)) => {
+                    any = true;
+                    file.others.push((number, line.number));
+                    while let Some(line) = lines.peek().filter(|line| !is_delimiter(line.text)) {
+                        lines.pass(&line);
+                    }
                 }
                 None if !in_stray_text => {
                     file.warnings.push(format!("line {} belongs to no data set", line.number));
@@ -135,63 +142,47 @@ impl UffFile {
     }
 
     /// Reads a data set up to the delimiter behind it, of which `line` is the first line.
-    fn take(&mut self, identifier: &Identifier, line: &Line, lines: &mut Lines) -> Result<(), RecordError> {
+    fn take(&mut self, is_binary: bool, line: &Line, lines: &mut Lines) -> Result<(), RecordError> {
         let begin = line.number;
-        let encoding = match identifier {
-            Identifier::Function => None,
-            Identifier::BinaryFunction => Some(Encoding::of(line)?),
-            Identifier::Other(number) => {
-                self.others.push((*number, begin));
-                while let Some(line) = lines.peek().filter(|line| !is_delimiter(line.text)) {
-                    lines.pass(&line);
-                }
-                return Ok(());
-            }
-        };
+        let encoding = if is_binary { Some(Encoding::of(line)?) } else { None };
         let Some((header, form)) = records::read(lines)? else {
             self.warnings.push(format!("the file ends within the header of the data set at line {begin}"));
             return Ok(());
         };
-        let points = match encoding {
+        let numbers = match encoding {
             None => text(lines, &form, begin, &mut self.warnings)?,
             Some(encoding) => binary(lines, &form, &encoding, begin, &mut self.warnings)?,
         };
-        let present = points.len();
-        if form.count != present as u64 || present == 0 {
-            let promised = form.count;
+        let points = numbers.chunks_exact(form.numbers());
+        let (promised, present) = (form.count, points.len());
+        if promised != present as u64 || present == 0 {
             self.warnings
                 .push(format!("the data set at line {begin} promises {promised} points, but {present} are there"));
         }
-        let count = points.not_finite();
+        let count = points.clone().filter(|point| point.iter().any(|number| !number.is_finite())).count();
         if count > 0 {
             self.warnings.push(format!("the data set at line {begin} has {count} points that are not finite"));
         }
         if present > 0 {
-            let (abscissae, ordinate) = points.into_parts();
-            let abscissa = match form.even {
-                Some((start, step)) => Abscissa::Even { start, step },
-                None => Abscissa::Uneven(abscissae),
+            let (abscissa, value) = match form.even {
+                Some((start, step)) => (Abscissa::Even { start, step }, 0),
+                None => (Abscissa::Uneven(points.clone().map(|point| point[0]).collect()), 1),
             };
-            self.sets.push(DataSet::new(header, abscissa, ordinate)?.with_precision(form.precision));
+            let ordinate = if form.complex {
+                Ordinate::Complex(points.map(|point| [point[value], point[value + 1]]).collect())
+            } else {
+                Ordinate::Real(points.map(|point| point[value]).collect())
+            };
+            self.sets.push(DataSet::new(header, abscissa, ordinate)?);
         }
         Ok(())
     }
 }
 
-/// The number of a data set, in its first line.
-enum Identifier {
-    Function,
-    BinaryFunction,
-    Other(u32),
-}
-
-impl Identifier {
-    fn of(line: &Line) -> Option<Self> {
-        let text = shown(line.text);
-        match text.split_whitespace().next()? {
-            "58" => Some(Self::Function),
-            "58b" | "58B" => Some(Self::BinaryFunction),
-            word => word.trim_end_matches(|letter: char| letter.is_ascii_alphabetic()).parse().ok().map(Self::Other),
-        }
-    }
+/// The number of a data set, in its first line, and whether its points are bytes.
+fn identifier(line: &Line) -> Option<(u32, bool)> {
+    let text = shown(line.text);
+    let word = text.split_whitespace().next()?;
+    let number = word.trim_end_matches(|letter: char| letter.is_ascii_alphabetic()).parse().ok()?;
+    Some((number, matches!(word, "58b" | "58B")))
 }

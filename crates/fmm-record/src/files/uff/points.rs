@@ -1,83 +1,19 @@
 //! Points of a data set, as text and as bytes.
 
+use super::ByteOrder;
 use super::lines::{Line, Lines, delimiter_at, find_delimiter, is_delimiter};
 use super::records::{Form, Numbers, shown, wrong_header};
-use super::{ByteOrder, Ordinate, Precision};
 use crate::error::RecordError;
 
-/// Collects the numbers of points: abscissa if it is uneven, then the ordinate or its two parts.
-pub(super) struct Points {
-    width: usize,
-    uneven: bool,
-    numbers: [f64; 3],
-    filled: usize,
-    abscissae: Vec<f64>,
-    ordinate: Ordinate,
-}
-
-impl Points {
-    pub(super) fn new(form: &Form) -> Self {
-        let ordinate = if form.complex { Ordinate::Complex(Vec::new()) } else { Ordinate::Real(Vec::new()) };
-        Self {
-            width: form.numbers(),
-            uneven: form.even.is_none(),
-            numbers: [0.0; 3],
-            filled: 0,
-            abscissae: Vec::new(),
-            ordinate,
-        }
-    }
-
-    pub(super) fn push(&mut self, number: f64) {
-        self.numbers[self.filled] = number;
-        self.filled += 1;
-        if self.filled < self.width {
-            return;
-        }
-        self.filled = 0;
-        let first = usize::from(self.uneven);
-        if self.uneven {
-            self.abscissae.push(self.numbers[0]);
-        }
-        match &mut self.ordinate {
-            Ordinate::Real(values) => values.push(self.numbers[first]),
-            Ordinate::Complex(values) => values.push([self.numbers[first], self.numbers[first + 1]]),
-        }
-    }
-
-    /// Number of complete points.
-    pub(super) fn len(&self) -> usize {
-        self.ordinate.len()
-    }
-
-    /// Number of points with numbers that are not finite.
-    pub(super) fn not_finite(&self) -> usize {
-        let finite = |index: usize| {
-            let ordinate = match &self.ordinate {
-                Ordinate::Real(values) => values[index].is_finite(),
-                Ordinate::Complex(values) => values[index].iter().all(|part| part.is_finite()),
-            };
-            ordinate && self.abscissae.get(index).is_none_or(|value| value.is_finite())
-        };
-        (0..self.len()).filter(|index| !finite(*index)).count()
-    }
-
-    /// The abscissae, `None` if they are even, and the ordinates.
-    pub(super) fn into_parts(self) -> (Vec<f64>, Ordinate) {
-        (self.abscissae, self.ordinate)
-    }
-}
-
-/// Reads points up to the delimiter or the end of the file; `begin` is the line at which the data set begins.
+/// Numbers of the points up to the delimiter or the end of the file; `begin` is the line at which the data set begins.
 pub(super) fn text(
     lines: &mut Lines,
     form: &Form,
     begin: u64,
     warnings: &mut Vec<String>,
-) -> Result<Points, RecordError> {
-    let mut points = Points::new(form);
+) -> Result<Vec<f64>, RecordError> {
+    let mut found = Vec::new();
     let needed = form.count.saturating_mul(form.numbers() as u64);
-    let mut taken = 0;
     let (mut closed, mut more) = (false, false);
     while let Some(line) = lines.peek() {
         if is_delimiter(line.text) {
@@ -87,20 +23,19 @@ pub(super) fn text(
         lines.pass(&line);
         let mut numbers = Numbers::new(line.text);
         while let Some(number) = numbers.next() {
-            if taken == needed {
+            if found.len() as u64 == needed {
                 more = true;
                 break;
             }
             let cut_off = !line.ended && numbers.at_end();
             match number {
                 _ if cut_off => break,
-                Ok(number) => points.push(number),
+                Ok(number) => found.push(number),
                 Err(text) => {
                     let (line, text) = (line.number, shown(text));
                     return Err(RecordError::on_line(line, format!("line {line}: \"{text}\" is not a number")));
                 }
             }
-            taken += 1;
         }
     }
     if more {
@@ -109,7 +44,7 @@ pub(super) fn text(
     if !closed {
         warnings.push(not_closed(begin));
     }
-    Ok(points)
+    Ok(found)
 }
 
 /// Description of the bytes of a binary data set, in its first line.
@@ -159,11 +94,11 @@ impl Layout {
     fn all(form: &Form) -> Vec<Self> {
         let parts = 1 + usize::from(form.complex);
         let layout = |abscissa, ordinate| Self { abscissa, ordinate, parts };
-        match (form.even.is_some(), form.precision) {
-            (true, Precision::Single) => vec![layout(0, 4)],
-            (true, Precision::Double) => vec![layout(0, 8)],
-            (false, Precision::Single) => vec![layout(4, 4)],
-            (false, Precision::Double) => vec![layout(4, 8), layout(8, 8)],
+        match (form.even.is_some(), form.is_double) {
+            (true, false) => vec![layout(0, 4)],
+            (true, true) => vec![layout(0, 8)],
+            (false, false) => vec![layout(4, 4)],
+            (false, true) => vec![layout(4, 8), layout(8, 8)],
         }
     }
 
@@ -198,7 +133,7 @@ fn number(bytes: &[u8], order: ByteOrder) -> f64 {
     if bytes.len() == 4 { f64::from(f32::from_bits(word as u32)) } else { f64::from_bits(word) }
 }
 
-/// Reads points up to the delimiter or the end of the file; `begin` is the line at which the data set begins.
+/// Numbers of the points up to the delimiter or the end of the file; `begin` is the line at which the data set begins.
 ///
 /// A delimiter within the points cannot be told from one behind them, so that the number of points and their type
 /// say where they end. Only where no delimiter follows there is one looked for.
@@ -208,7 +143,7 @@ pub(super) fn binary(
     encoding: &Encoding,
     begin: u64,
     warnings: &mut Vec<String>,
-) -> Result<Points, RecordError> {
+) -> Result<Vec<f64>, RecordError> {
     let bytes = lines.rest();
     let order = encoding.order;
     let layouts = Layout::all(form);
@@ -237,15 +172,14 @@ pub(super) fn binary(
         }
         (*layout, kept(layout), block.len())
     };
-    let mut points = Points::new(form);
-    layout.numbers(&bytes[..end], order).for_each(|number| points.push(number));
-    let actual = (points.len() * layout.point()) as u64;
-    if points.len() as u64 == form.count && !matches!(encoding.stated, 0) && encoding.stated != actual {
+    let points = end / layout.point();
+    let actual = (points * layout.point()) as u64;
+    if points as u64 == form.count && !matches!(encoding.stated, 0) && encoding.stated != actual {
         let stated = encoding.stated;
         warnings.push(format!("the data set at line {begin} states {stated} bytes, but its points have {actual}"));
     }
     lines.skip(next);
-    Ok(points)
+    Ok(layout.numbers(&bytes[..end], order).collect())
 }
 
 /// Points follow those that the header promises. They were not read.

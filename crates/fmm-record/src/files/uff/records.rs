@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use super::lines::{Line, Lines};
-use super::{Axis, DataType, Freedom, FunctionType, Header, Precision};
+use super::{Axis, DataType, Freedom, FunctionType, Header};
 use crate::error::RecordError;
 
 /// Number of lines in a header.
@@ -11,7 +11,8 @@ pub(super) const LINES: usize = 11;
 
 /// Form of the points in the file.
 pub(super) struct Form {
-    pub(super) precision: Precision,
+    /// True for ordinates of 64 bits.
+    pub(super) is_double: bool,
     pub(super) complex: bool,
     /// Number of points that the header promises.
     pub(super) count: u64,
@@ -20,7 +21,7 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// Number of numbers of a point.
+    /// Number of numbers of a point: its abscissa if that is uneven, then its ordinate or the two parts.
     pub(super) fn numbers(&self) -> usize {
         1 + usize::from(self.complex) + usize::from(self.even.is_none())
     }
@@ -155,11 +156,11 @@ impl Record {
         let (kind, count, spacing, reals) = by_columns().or_else(by_words).ok_or_else(|| {
             self.error("here the format has ordinate type, number of points, spacing, start, step, z")
         })?;
-        let (precision, complex) = match kind {
-            2.0 => (Precision::Single, false),
-            4.0 => (Precision::Double, false),
-            5.0 => (Precision::Single, true),
-            6.0 => (Precision::Double, true),
+        let (is_double, complex) = match kind {
+            2.0 => (false, false),
+            4.0 => (true, false),
+            5.0 => (false, true),
+            6.0 => (true, true),
             _ => return Err(self.error("the type of the ordinate must be 2, 4, 5 or 6")),
         };
         let even = match (spacing, reals.first(), reals.get(1)) {
@@ -169,7 +170,7 @@ impl Record {
             _ => return Err(self.error("the spacing of the abscissa must be 0 (uneven) or 1 (even)")),
         };
         let z = reals.get(2).copied().unwrap_or_default();
-        Ok((Form { precision, complex, count, even }, z))
+        Ok((Form { is_double, complex, count, even }, z))
     }
 
     /// Records 8 to 11: an axis.

@@ -1,17 +1,17 @@
 //! Data sets into a file.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
+use std::sync::Arc;
 
-use super::{Abscissa, Axis, DataSet, Freedom, Ordinate, Precision};
+use super::{Abscissa, Axis, DataSet, Freedom, Ordinate};
 use crate::error::RecordError;
 use crate::files::number::ByteOrder;
 
 /// Form of the points in a file that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// Text: 6 digits of single, 13 of double numbers.
+    /// Text of 13 digits.
     Ascii,
     /// Bytes, which keep all digits.
     Binary(ByteOrder),
@@ -22,11 +22,9 @@ pub enum Form {
 /// # Errors
 /// [`RecordError::Io`], otherwise as [`write_to`].
 pub fn write(path: impl AsRef<Path>, sets: &[DataSet], form: Form) -> Result<(), RecordError> {
-    let path = path.as_ref();
-    let file = File::create(path).map_err(|source| RecordError::io("create", path, source))?;
-    let mut out = BufWriter::new(file);
-    write_to(&mut out, sets, form)?;
-    out.flush().map_err(interrupted)
+    let mut bytes = Vec::new();
+    write_to(&mut bytes, sets, form)?;
+    std::fs::write(&path, bytes).map_err(|source| RecordError::io("create", path.as_ref(), source))
 }
 
 /// Writes data sets to `out`, one behind the other.
@@ -39,29 +37,20 @@ pub fn write(path: impl AsRef<Path>, sets: &[DataSet], form: Form) -> Result<(),
 /// [`RecordError::Unsupported`] or [`RecordError::Values`] for content that the format cannot hold, and
 /// [`RecordError::Io`] if writing fails.
 pub fn write_to(mut out: impl Write, sets: &[DataSet], form: Form) -> Result<(), RecordError> {
-    for set in sets {
-        out.write_all(&block(set, form)?).map_err(interrupted)?;
-    }
-    Ok(())
-}
-
-/// Writing that stopped half way.
-fn interrupted(source: std::io::Error) -> RecordError {
-    RecordError::Io { what: "write on".into(), source: std::sync::Arc::new(source) }
+    let stopped = |source| RecordError::Io { what: "write on".into(), source: Arc::new(source) };
+    sets.iter().try_for_each(|set| out.write_all(&block(set, form)?).map_err(stopped))
 }
 
 /// A data set with its delimiters.
 fn block(set: &DataSet, form: Form) -> Result<Vec<u8>, RecordError> {
-    let points = match form {
-        Form::Ascii => text_points(set)?,
-        Form::Binary(order) => binary_points(set, order)?,
-    };
-    let identifier = match form {
-        Form::Ascii => format!("{:>6}", 58),
+    let (points, identifier) = match form {
+        Form::Ascii => (text_points(set)?, format!("{:>6}", 58)),
         Form::Binary(order) => {
+            let points = binary_points(set, order)?;
             let order = if order == ByteOrder::Little { 1 } else { 2 };
             let (bytes, zero) = (points.len(), 0);
-            format!("{:>6}b{order:>6}{:>6}{:>12}{bytes:>12}{zero:>6}{zero:>6}{zero:>12}{zero:>12}", 58, 2, 11)
+            let rest = format!("{bytes:>12}{zero:>6}{zero:>6}{zero:>12}{zero:>12}");
+            (points, format!("{:>6}b{order:>6}{:>6}{:>12}{rest}", 58, 2, 11))
         }
     };
     let mut block = format!("    -1\n{identifier}\n").into_bytes();
@@ -88,12 +77,7 @@ fn header(set: &DataSet, block: &mut Vec<u8>) -> Result<(), RecordError> {
         block.extend(integer("node", (*node).into(), 10)?);
         block.extend(integer("direction", (*direction).into(), 4)?);
     }
-    let ordinate = match (set.ordinate(), set.precision()) {
-        (Ordinate::Real(_), Precision::Single) => 2,
-        (Ordinate::Real(_), Precision::Double) => 4,
-        (Ordinate::Complex(_), Precision::Single) => 5,
-        (Ordinate::Complex(_), Precision::Double) => 6,
-    };
+    let ordinate = if matches!(set.ordinate(), Ordinate::Real(_)) { 4 } else { 6 };
     let (spacing, start, step) = match set.abscissa() {
         Abscissa::Even { start, step } => (1, *start, *step),
         Abscissa::Uneven(_) => (0, 0.0, 0.0),
@@ -161,72 +145,49 @@ fn scientific(value: f64, decimals: usize) -> String {
     }
 }
 
-/// The value in single precision, unless it is lost there.
-fn single(index: usize, value: f64) -> Result<f32, RecordError> {
-    let single = value as f32;
-    if single.is_finite() || !value.is_finite() {
-        return Ok(single);
-    }
-    let what = format!(
-        "value {index}, {value}, is beyond the range of single precision; write the data set in double precision"
-    );
-    Err(RecordError::Values { index, what })
-}
-
-/// The numbers of all points, each with its index and whether it is an abscissa or a value.
-fn numbers(set: &DataSet) -> impl Iterator<Item = (usize, bool, f64)> {
+/// The numbers of all points, and whether each is an abscissa.
+fn numbers(set: &DataSet) -> impl Iterator<Item = (bool, f64)> {
     let abscissae = match set.abscissa() {
         Abscissa::Even { .. } => &[][..],
         Abscissa::Uneven(values) => values,
     };
     (0..set.len()).flat_map(move |index| {
-        let abscissa = abscissae.get(index).map(|value| (index, true, *value));
+        let abscissa = abscissae.get(index).map(|value| (true, *value));
         let [first, second] = match set.ordinate() {
             Ordinate::Real(values) => [Some(values[index]), None],
             Ordinate::Complex(values) => values[index].map(Some),
         };
-        let value = move |value: Option<f64>| value.map(|value| (index, false, value));
-        abscissa.into_iter().chain(value(first)).chain(value(second))
+        abscissa.into_iter().chain([first, second].into_iter().flatten().map(|value| (false, value)))
     })
 }
 
-/// Refuses uneven abscissae that differ, but not after rounding by `rounded`.
+/// Refuses uneven abscissae that differ or are finite, but not after rounding by `rounded`.
 fn told_apart(set: &DataSet, rounded: impl Fn(f64) -> f64) -> Result<(), RecordError> {
     let Abscissa::Uneven(values) = set.abscissa() else { return Ok(()) };
-    let merged = |pair: &[f64]| pair[0] != pair[1] && rounded(pair[0]) == rounded(pair[1]);
-    match values.windows(2).position(merged) {
-        Some(index) => {
-            let value = values[index];
-            let what = format!(
-                "abscissa {index}, {value}, cannot be told from its neighbour in the digits that the format has for it"
-            );
-            Err(RecordError::Values { index, what })
-        }
-        None => Ok(()),
-    }
+    let is_merged = |value: f64, next: &f64| *next != value && rounded(*next) == rounded(value);
+    let is_lost = |index: usize| {
+        let value = values[index];
+        let is_too_large = value.is_finite() && !rounded(value).is_finite();
+        is_too_large || values.get(index + 1).is_some_and(|next| is_merged(value, next))
+    };
+    let Some(index) = (0..values.len()).find(|index| is_lost(*index)) else { return Ok(()) };
+    let value = values[index];
+    let what = format!(
+        "abscissa {index}, {value}, is too large or cannot be told from its neighbour in the digits that the format \
+         has for it"
+    );
+    Err(RecordError::Values { index, what })
 }
 
 fn text_points(set: &DataSet) -> Result<Vec<u8>, RecordError> {
     told_apart(set, |value| scientific(value, 5).parse().unwrap_or(f64::NAN))?;
-    let double = set.precision() == Precision::Double;
-    let uneven = matches!(set.abscissa(), Abscissa::Uneven(_));
-    let complex = matches!(set.ordinate(), Ordinate::Complex(_));
-    let in_line = match (double, uneven, complex) {
-        (false, ..) => 6,
-        (true, true, true) => 3,
-        (true, ..) => 4,
-    };
+    let are_three = matches!((set.abscissa(), set.ordinate()), (Abscissa::Uneven(_), Ordinate::Complex(_)));
+    let in_line = if are_three { 3 } else { 4 };
     let mut block = Vec::new();
     let mut column = 0;
-    for (index, is_abscissa, value) in numbers(set) {
-        if !double {
-            single(index, value)?;
-        }
-        let field = if double && !is_abscissa {
-            format!("{:>20}", scientific(value, 12))
-        } else {
-            format!("{:>13}", scientific(value, 5))
-        };
+    for (is_abscissa, value) in numbers(set) {
+        let (width, decimals) = if is_abscissa { (13, 5) } else { (20, 12) };
+        let field = format!("{:>width$}", scientific(value, decimals));
         block.extend_from_slice(field.as_bytes());
         column += 1;
         if column == in_line {
@@ -243,13 +204,12 @@ fn text_points(set: &DataSet) -> Result<Vec<u8>, RecordError> {
 fn binary_points(set: &DataSet, order: ByteOrder) -> Result<Vec<u8>, RecordError> {
     told_apart(set, |value| f64::from(value as f32))?;
     let mut block = Vec::new();
-    for (index, is_abscissa, value) in numbers(set) {
-        let is_double = set.precision() == Precision::Double && !is_abscissa;
-        match (is_double, order) {
-            (true, ByteOrder::Little) => block.extend(value.to_le_bytes()),
-            (true, ByteOrder::Big) => block.extend(value.to_be_bytes()),
-            (false, ByteOrder::Little) => block.extend(single(index, value)?.to_le_bytes()),
-            (false, ByteOrder::Big) => block.extend(single(index, value)?.to_be_bytes()),
+    for (is_abscissa, value) in numbers(set) {
+        match (is_abscissa, order) {
+            (false, ByteOrder::Little) => block.extend(value.to_le_bytes()),
+            (false, ByteOrder::Big) => block.extend(value.to_be_bytes()),
+            (true, ByteOrder::Little) => block.extend((value as f32).to_le_bytes()),
+            (true, ByteOrder::Big) => block.extend((value as f32).to_be_bytes()),
         }
     }
     Ok(block)

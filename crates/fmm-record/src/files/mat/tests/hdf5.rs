@@ -1,7 +1,7 @@
 use crate::error::RecordError;
 use crate::sampling::Sampling;
 use crate::tests::synthetic::Noise;
-use super::{Class, parse_hdf5 as parse_bytes};
+use super::{class, parse_hdf5 as parse_bytes};
 
 fn file() -> Vec<u8> {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/matlab_v73.mat");
@@ -18,7 +18,7 @@ fn variables_of_all_classes() {
     );
     let mut others = file.others.clone();
     others.sort_by(|a, b| a.0.cmp(&b.0));
-    let expected = [("c", Class::Cell), ("info", Class::Structure), ("note", Class::Text), ("z", Class::Complex)];
+    let expected = [("c", class::CELL), ("info", class::STRUCTURE), ("note", class::TEXT), ("z", class::COMPLEX)];
     assert_eq!(others, expected.map(|(name, kind)| (name.to_owned(), kind.to_string())));
     // Rows of HDF5 are columns of MATLAB.
     assert_eq!(file.array("counts").unwrap().values(), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);

@@ -1,6 +1,6 @@
 use std::io::Write;
 
-use super::{Class, parse as parse_bytes};
+use super::{class, parse as parse_bytes};
 use crate::error::{RecordError, says};
 use crate::files::Reader;
 use crate::files::arrays::{Array, ArrayFile};
@@ -70,7 +70,7 @@ fn parse(variables: &[Vec<u8>]) -> Result<ArrayFile, RecordError> {
 fn fork_is_read_with_its_own_rate() {
     let file = parse_bytes(&std::fs::read(fork_path()).unwrap()).unwrap();
     assert_eq!(file.arrays.iter().map(Array::name).collect::<Vec<_>>(), ["duration", "ActualRate", "data"]);
-    assert!(file.others.contains(&("bicycle".into(), Class::Text.to_string())));
+    assert!(file.others.contains(&("bicycle".into(), class::TEXT.to_string())));
     let reading = file.channel("data").unwrap();
     let record = &reading.record;
     assert_eq!((record.len(), record.rate()), (30_000, 1000.0));
@@ -188,7 +188,7 @@ fn other_kinds_are_listed_and_named() {
     let file = parse(&[complex, cube, empty, cell, object]).unwrap();
     assert_eq!(
         file.others,
-        [("z", Class::Complex), ("c", Class::Cell), ("table", Class::Object)]
+        [("z", class::COMPLEX), ("c", class::CELL), ("table", class::OBJECT)]
             .map(|(name, kind)| (name.to_owned(), kind.to_string()))
     );
     assert!(says(&file.channel("z"), "is complex, not a real numeric array"));

@@ -75,7 +75,7 @@ fn other_data_sets_are_passed_over() {
     assert!(file.warnings().is_empty());
     assert_eq!(file.others(), [(151, 2), (164, 7), (15, 42)]);
     assert_eq!(file.sets().iter().map(real).collect::<Vec<_>>(), [VALUES; 3]);
-    assert!(says(&file.channel("velocity"), "data sets are called"));
+    assert!(says(&channel(&file, "velocity"), "data sets are called"));
     let error = UffFile::parse(&[other(164), other(151), other(164)].concat()).unwrap_err().to_string();
     assert_eq!(error, "the file has no data set 58 with points, only 151, 164");
     // One delimiter between data sets instead of two.
@@ -283,7 +283,7 @@ fn damaged_files_never_panic() {
                     };
                 }
                 if let Ok(file) = UffFile::parse(&damaged) {
-                    let _ = (file.reading(), file.channel(0));
+                    let _ = (reading(&file), channel(&file, 0));
                     let _ = write_to(std::io::sink(), file.sets(), Form::Ascii);
                 }
             }

@@ -5,6 +5,8 @@ mod files;
 mod writing;
 
 use super::*;
+use crate::files::reading::{Column, Reading};
+use crate::record::Span;
 
 /// A file of the tests.
 fn file(name: &str) -> Vec<u8> {
@@ -51,4 +53,13 @@ fn complex(set: &DataSet) -> &[[f64; 2]] {
         Ordinate::Complex(values) => values,
         Ordinate::Real(_) => panic!("real"),
     }
+}
+
+/// The reading of a channel of a file, or of the only record over time.
+fn channel(file: &UffFile, channel: impl Into<Column>) -> Result<Reading, RecordError> {
+    file.part(Some(&channel.into()), Span::default())
+}
+
+fn reading(file: &UffFile) -> Result<Reading, RecordError> {
+    file.part(None, Span::default())
 }
