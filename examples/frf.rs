@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage, resonances};
+use fmm_frf::{AverageOptions, Estimator, ResponseForm, TrialAverage};
 use fmm_record::{Quantity, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let average = average.ok_or("no blow")?;
     let (response, coherence) = (average.estimate(Estimator::H1)?, average.coherence()?);
-    for peak in resonances(&response, 20.0) {
+    for peak in response.resonances(20.0) {
         println!("{:8.2} Hz: |H| = {:.2} {}", peak.frequency, peak.magnitude, response.form().unit());
     }
     println!("median coherence {:?}", coherence.median(1.0, 1000.0));

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use fmm_frf::{
     AverageOptions, Background, Baseline, Estimator, Pulse, RationalFit, ResponseForm, TrialAverage, impulse,
-    resonances,
 };
 use fmm_record::Reader;
 use fmm_record::{Quantity, Record};
@@ -52,7 +51,7 @@ fn impulses() {
 fn resonances_and_coherence() {
     let average = average(&blows(), &AverageOptions::default());
     let (h1, coherence) = (average.estimate(Estimator::H1).unwrap(), average.coherence().unwrap());
-    let found = resonances(&h1.within(100.0, 5000.0).unwrap(), 25.0);
+    let found = h1.within(100.0, 5000.0).unwrap().resonances(25.0);
     for (frequency, magnitude) in [(810.0, 134.0), (900.0, 459.0), (2640.0, 321.0), (3669.0, 3004.0), (4128.0, 2616.0)]
     {
         let peak = found.iter().find(|peak| (peak.frequency - frequency).abs() < 0.5);
@@ -62,7 +61,7 @@ fn resonances_and_coherence() {
         assert!((0.998..=1.0).contains(&there), "coherence {there} at {frequency} Hz");
         // Between the lines, by a fit to the ten nearest.
         let fit = RationalFit::of(&h1, frequency - 5.0, frequency + 5.0, Background::OtherModes).unwrap();
-        let mode = fit.mode;
+        let mode = fit;
         assert!((mode.natural_frequency.value - frequency).abs() < 1.0, "{mode}");
         assert!((1e-4..2e-3).contains(&mode.damping_ratio.value), "{mode}");
     }

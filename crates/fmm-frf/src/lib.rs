@@ -1,7 +1,7 @@
 //! Frequency response of machines with friction: impact tests, modes, and backbones of decays.
 //!
 //! ```
-//! use fmm_frf::{Baseline, SingleDegreeOfFreedom, friction_force_of_coulomb_impact, impulse};
+//! use fmm_frf::{Baseline, SingleDegreeOfFreedom, impulse};
 //!
 //! // A half-sine impact of 1000 N and 2.2 ms, sampled at 10 kHz.
 //! let force: Vec<f64> = (0..=22).map(|i| 1000.0 * (std::f64::consts::PI * f64::from(i) / 22.0).sin()).collect();
@@ -10,7 +10,7 @@
 //!
 //! // It made a machine with friction answer with a receptance of 5.1e-3 m/N at most.
 //! let machine = SingleDegreeOfFreedom::new(10.391, 0.0, 1982.0)?;
-//! let friction = friction_force_of_coulomb_impact(given, 10.391, machine.natural_angular_frequency(), 5.1e-3)?;
+//! let friction = machine.friction_after_impact(given, 5.1e-3)?;
 //! assert!((friction - 0.7502).abs() < 5e-5);
 //! # Ok::<(), fmm_frf::FrfError>(())
 //! ```
@@ -23,9 +23,9 @@
 //! | what is the response? | [`TrialAverage`] with an [`Estimator`], [`Coherence`], uncertainties from the trials |
 //! | noise between impacts, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
 //! | in which form? | [`FrequencyResponse`]: receptance, mobility, accelerance; delays; bands |
-//! | which modes? | [`resonances`], [`RationalFit`] |
+//! | which modes? | [`FrequencyResponse::resonances`], [`RationalFit`] |
 //! | which modes does a decay have, and how do frequency and damping depend on the amplitude? | [`decay_modes`], [`Backbone`] and its [`Suggestion`]; [`IsolatedMode`] takes one out |
-//! | how much friction? | [`friction_force_of_coulomb_impact`], [`friction_force_of_viscous_coulomb_impact`], [`CoulombLine`] |
+//! | how much friction? | [`SingleDegreeOfFreedom::friction_after_impact`], [`CoulombLine`] |
 //! | is it friction at all? | [`FrictionSpectrum`]: odd harmonics, against the linear response of [`SingleDegreeOfFreedom`] |
 //!
 //! # Estimators and fits
@@ -67,34 +67,27 @@
 //! half a percent and give its start values. There are no features.
 
 mod average;
-mod baseline;
 mod channel;
 mod decay;
 mod error;
 mod friction;
 mod impulse;
-mod least_squares;
 mod modal;
 mod response;
 
 pub use average::{AverageOptions, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage};
-pub use baseline::Baseline;
-pub use channel::Channel;
+pub use channel::{Baseline, Channel};
 pub use decay::{
     Backbone, BackboneOptions, BackbonePoint, DampingTerm, DampingTermKind, DecayMode, IsolatedMode, Suggestion,
     decay_modes,
 };
 pub use error::FrfError;
 pub use fmm_model::{Estimated, ModelError};
-pub use fmm_record::{Complex64, RealTransform};
-pub use friction::{
-    CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration, equivalent_damping_of_friction,
-    friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact, peak_receptance_of_coulomb_impact,
-    peak_receptance_of_viscous_coulomb_impact,
-};
+pub use fmm_record::Complex64;
+pub use friction::{CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration};
 pub use impulse::{Hit, Pulse, impulse};
-pub use modal::{Background, Mode, RationalFit};
-pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom, resonances};
+pub use modal::{Background, RationalFit};
+pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use fmm_fit::effective_count;
-use fmm_frf::{coulomb_impact_duration, peak_receptance_of_coulomb_impact};
+use fmm_frf::{SingleDegreeOfFreedom, coulomb_impact_duration};
 use fmm_friction::CoulombViscous;
 use fmm_identify::{Experiment, Known, Machine, Preparation, identify};
 use fmm_record::{Quantity, Reader, Swings};
@@ -52,7 +52,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // A hammer of 1.42 N s would show the same friction in another way.
     let omega = std::f64::consts::TAU * found.finding("natural_frequency_hz").ok_or("every fit has one")?.value();
-    let peak = peak_receptance_of_coulomb_impact(1.42, MASS.0, omega, force.value())?;
+    let machine = SingleDegreeOfFreedom::new(MASS.0, 0.0, MASS.0 * omega * omega)?;
+    let peak = machine.peak_after_impact(1.42, force.value())?;
     let duration = coulomb_impact_duration(1.42, force.value())?;
     println!("a blow of 1.42 N s would ring for {duration:.2} s, with a receptance of {peak:.2e} m/N");
 

@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use fmm_frf::{
-    AverageOptions, Background, CoulombLine, Estimator, FrfError, RationalFit, ResponseForm, TrialAverage,
-    peak_receptance_of_coulomb_impact,
+    AverageOptions, Background, CoulombLine, Estimator, FrfError, RationalFit, ResponseForm, SingleDegreeOfFreedom,
+    TrialAverage,
 };
 
 /// Sampling rate (Hz), samples of a record, and the sample of the blow.
@@ -32,7 +32,7 @@ fn main() -> Result<(), FrfError> {
         average.add(&force, &velocity(impulse))?;
     }
     let mobility = average.estimate(Estimator::H1)?;
-    let mode = RationalFit::of(&mobility, 3.0, 7.0, Background::OtherModes)?.mode;
+    let mode = RationalFit::of(&mobility, 3.0, 7.0, Background::OtherModes)?;
     let omega = std::f64::consts::TAU * mode.natural_frequency.value;
     println!("natural frequency {:.4} Hz, damping ratio {:.4}", mode.natural_frequency.value, mode.damping_ratio.value);
     // ω₀² = ω_d² + δ²; the sampling of the sharp blow leaves a few parts in 10⁴.
@@ -40,7 +40,8 @@ fn main() -> Result<(), FrfError> {
 
     // A contact with 0.75 N of friction is put on, and the peaks of the receptance grow with the impulse.
     let impulses = [0.98, 1.42, 1.64];
-    let peaks = impulses.map(|impulse| peak_receptance_of_coulomb_impact(impulse, 2.0, omega, 0.75));
+    let machine = SingleDegreeOfFreedom::new(2.0, 0.0, 2.0 * omega * omega)?;
+    let peaks = impulses.map(|impulse| machine.peak_after_impact(impulse, 0.75));
     let peaks = peaks.into_iter().collect::<Result<Vec<f64>, FrfError>>()?;
     let friction = CoulombLine::fit(&impulses, &peaks, 2.0, omega)?.friction_force;
     println!("friction force {:.4} N from peaks of {peaks:.4?} m/N", friction.value);

@@ -6,7 +6,7 @@ use std::ops::Range;
 use clap::ValueEnum;
 use fmm_frf::{
     AverageOptions, Background, Baseline, Coherence, Estimator, ExponentialWindow, ForceWindow, FrequencyResponse,
-    Pulse, RationalFit, Resonance, ResponseForm, Taper, TrialAverage, impulse, resonances,
+    Pulse, RationalFit, Resonance, ResponseForm, Taper, TrialAverage, impulse,
 };
 use fmm_record::{Record, saturation};
 
@@ -201,7 +201,7 @@ fn usable(average: &TrialAverage) -> Result<f64, Box<dyn Error>> {
 
 /// Resonances up to `usable` (Hz), each with a fit to the lines within 10 dB of it.
 fn peaks(h1: &FrequencyResponse, coherence: &Coherence, usable: f64) -> Vec<Peak> {
-    let found = resonances(h1, PROMINENCE).into_iter().filter(|peak| peak.frequency <= usable);
+    let found = h1.resonances(PROMINENCE).into_iter().filter(|peak| peak.frequency <= usable);
     let lines = h1.frequencies();
     let magnitude = |line: usize| h1.values()[line].norm();
     let peak = |line: Resonance| {
@@ -212,10 +212,8 @@ fn peaks(h1: &FrequencyResponse, coherence: &Coherence, usable: f64) -> Vec<Peak
         let band = (lines[at.saturating_sub(below)], lines[(at + above).min(lines.len() - 1)]);
         let fit = RationalFit::of(h1, band.0, band.1, Background::OtherModes).ok();
         // A fit that puts its mode elsewhere, or has none that is damped, is no fit of this peak.
-        let fit = fit.filter(|fit| {
-            let mode = fit.mode;
-            (band.0..=band.1).contains(&mode.natural_frequency.value) && mode.damping_ratio.value > 0.0
-        });
+        let fit =
+            fit.filter(|fit| (band.0..=band.1).contains(&fit.natural_frequency.value) && fit.damping_ratio.value > 0.0);
         Peak { line, coherence: coherence.values()[at], fit, band }
     };
     found.map(peak).collect()

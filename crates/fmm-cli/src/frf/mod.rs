@@ -17,7 +17,7 @@ use crate::files::named;
 use crate::output::{Output, print};
 use analysis::{Analysis, Window};
 use clap::Args;
-use fmm_frf::{FrequencyResponse, ResponseForm};
+use fmm_frf::{FrequencyResponse, RationalFit, ResponseForm};
 use fmm_record::Quantity;
 use serde_json::json;
 use trials::{Channels, Trial};
@@ -83,7 +83,7 @@ fn report(trials: &[Trial], analysis: &Analysis) -> Result<String, std::fmt::Err
         writeln!(text, "\n{:>10} {magnitude:>12} {:>9}   mode", "peak Hz", "coherence")?;
     }
     for peak in &analysis.peaks {
-        let mode = peak.fit.as_ref().map_or_else(|| "-".to_owned(), |fit| fit.mode.to_string());
+        let mode = peak.fit.as_ref().map_or_else(|| "-".to_owned(), RationalFit::to_string);
         let (frequency, magnitude) = (peak.line.frequency, peak.line.magnitude);
         writeln!(text, "{frequency:>10.4} {magnitude:>12.5} {:>9.4}   {mode}", peak.coherence)?;
     }
@@ -100,7 +100,7 @@ fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
     };
     let measured = |value: fmm_frf::Estimated| json!({ "value": value.value, "u": value.uncertainty });
     let modes = analysis.peaks.iter().filter_map(|peak| {
-        let mode = peak.fit.as_ref()?.mode;
+        let mode = peak.fit.as_ref()?;
         Some(json!({
             "peak_hz": peak.line.frequency,
             "natural_frequency_hz": measured(mode.natural_frequency),

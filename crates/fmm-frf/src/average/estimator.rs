@@ -123,16 +123,12 @@ impl Estimator {
 /// friction under different impulses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coherence {
-    frequencies: Arc<[f64]>,
-    values: Vec<f64>,
-    averages: f64,
+    pub(super) frequencies: Arc<[f64]>,
+    pub(super) values: Vec<f64>,
+    pub(super) averages: f64,
 }
 
 impl Coherence {
-    pub(crate) fn new(frequencies: Arc<[f64]>, values: Vec<f64>, averages: f64) -> Self {
-        Self { frequencies, values, averages }
-    }
-
     /// Frequencies (Hz), increasing.
     pub fn frequencies(&self) -> &[f64] {
         &self.frequencies
@@ -212,10 +208,11 @@ mod tests {
 
     #[test]
     fn the_median_is_of_a_band() {
-        let coherence = Coherence::new(vec![0.0, 1.0, 2.0, 3.0].into(), vec![0.1, 0.9, 0.5, 0.7], 3.0);
+        let frequencies = vec![0.0, 1.0, 2.0, 3.0].into();
+        let coherence = Coherence { frequencies, values: vec![0.1, 0.9, 0.5, 0.7], averages: 3.0 };
         assert_eq!(coherence.median(1.0, 3.0), Some(0.7));
         assert_eq!(coherence.median(0.0, 1.0), Some(0.5));
         assert_eq!(coherence.median(4.0, 5.0), None);
-        assert!(coherence.is_meaningful() && !Coherence::new(vec![].into(), vec![], 1.0).is_meaningful());
+        assert!(coherence.is_meaningful() && !Coherence { averages: 1.0, ..coherence }.is_meaningful());
     }
 }

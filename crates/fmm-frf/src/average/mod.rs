@@ -97,14 +97,8 @@ impl TrialAverage {
             form,
             rate,
             length,
-            decay_rate: options.windows.exponential.map_or(0.0, |window| window.decay_rate()),
-            transform: TrialTransform::new(
-                length,
-                interval,
-                &options.windows,
-                options.force_baseline.clone(),
-                options.response_baseline.clone(),
-            )?,
+            decay_rate: options.decay_rate(),
+            transform: TrialTransform::new(length, interval, options)?,
             frequencies: lines.clone().map(|line| line as f64 * rate / length as f64).collect(),
             spectra: SpectralSums::new(lines.len()),
             waiting: 0,
@@ -169,12 +163,10 @@ impl TrialAverage {
             return Err(FrfError::outside(what));
         }
         if force.len() < self.length {
-            let (expected, found) = (self.length, force.len());
-            return Err(FrfError::sample_count(Channel::Force, expected, found));
+            return Err(FrfError::sample_count(Channel::Force, self.length, force.len()));
         }
         if response.len() != force.len() {
-            let (expected, found) = (force.len(), response.len());
-            return Err(FrfError::sample_count(Channel::Response, expected, found));
+            return Err(FrfError::sample_count(Channel::Response, force.len(), response.len()));
         }
         let step = self.length - overlap;
         let segments = (force.len() - self.length) / step + 1;
@@ -283,7 +275,7 @@ impl TrialAverage {
         {
             return Err(undefined);
         }
-        Ok(Coherence::new(Arc::clone(&self.frequencies), values, self.trials as f64))
+        Ok(Coherence { frequencies: Arc::clone(&self.frequencies), values, averages: self.trials as f64 })
     }
 
     /// One-sided power spectral density of the force (N²/Hz) at each line; it integrates to the mean square of the
@@ -329,7 +321,8 @@ impl TrialAverage {
     }
 
     fn ratios(&self) -> Result<&RatioSums, FrfError> {
-        self.ratios.as_ref().ok_or_else(ratios_not_kept)
+        let what = "the ratios of the single trials were not kept; ask for them with AverageOptions::keeping_ratios";
+        self.ratios.as_ref().ok_or_else(|| FrfError::outside(what))
     }
 
     /// Values of `rule` at each line.
@@ -355,9 +348,4 @@ fn trial<'a>(transform: &'a TrialTransform, lines: &Range<usize>, slot: usize) -
 /// Error of an estimate without a trial.
 fn no_trials() -> FrfError {
     FrfError::too_few("there is no trial to average over yet")
-}
-
-/// Error of a mean of ratios that was not asked for in time.
-fn ratios_not_kept() -> FrfError {
-    FrfError::outside("the ratios of the single trials were not kept; ask for them with AverageOptions::keeping_ratios")
 }

@@ -1,7 +1,7 @@
 //! Options of an average of trials.
 
-use crate::average::window::{ExponentialWindow, ForceWindow, Taper, Windows};
-use crate::baseline::Baseline;
+use crate::average::window::{ExponentialWindow, ForceWindow, Taper};
+use crate::channel::Baseline;
 use crate::error::FrfError;
 
 /// Treatment of the trials of a [`TrialAverage`](crate::TrialAverage); the default takes them as they are.
@@ -21,7 +21,9 @@ use crate::error::FrfError;
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct AverageOptions {
-    pub(crate) windows: Windows,
+    taper: Taper,
+    force_window: Option<ForceWindow>,
+    exponential_window: Option<ExponentialWindow>,
     pub(crate) force_baseline: Baseline,
     pub(crate) response_baseline: Baseline,
     pub(crate) keeps_ratios: bool,
@@ -32,21 +34,21 @@ impl AverageOptions {
     /// Weights that fade both channels in and out.
     #[must_use]
     pub fn taper(mut self, taper: Taper) -> Self {
-        self.windows.taper = taper;
+        self.taper = taper;
         self
     }
 
     /// Weights on the force that leave the pulse alone.
     #[must_use]
     pub fn force_window(mut self, window: ForceWindow) -> Self {
-        self.windows.force = Some(window);
+        self.force_window = Some(window);
         self
     }
 
     /// A decaying exponential on both channels.
     #[must_use]
     pub fn exponential_window(mut self, window: ExponentialWindow) -> Self {
-        self.windows.exponential = Some(window);
+        self.exponential_window = Some(window);
         self
     }
 
@@ -83,5 +85,37 @@ impl AverageOptions {
         }
         self.band = Some((low, high));
         Ok(self)
+    }
+
+    /// σ, decay rate (1/s) of the exponential window; 0 without one.
+    pub(super) fn decay_rate(&self) -> f64 {
+        self.exponential_window.map_or(0.0, |window| window.decay_rate())
+    }
+
+    /// Weights of the response for `length` samples every `interval` (s); `None` if all are one.
+    pub(super) fn response_weights(&self, length: usize, interval: f64) -> Option<Vec<f64>> {
+        if self.taper == Taper::Rectangular && self.exponential_window.is_none() {
+            return None;
+        }
+        let decay_rate = self.decay_rate();
+        let weight = |i| self.taper.weight(i, length) * (-decay_rate * interval * i as f64).exp();
+        Some((0..length).map(weight).collect())
+    }
+
+    /// Weights of the force; `None` if all are one.
+    ///
+    /// # Errors
+    /// [`FrfError::Outside`] if none but zero is left.
+    pub(super) fn force_weights(&self, length: usize, interval: f64) -> Result<Option<Vec<f64>>, FrfError> {
+        let Some(window) = self.force_window else { return Ok(self.response_weights(length, interval)) };
+        let mut weights = self.response_weights(length, interval).unwrap_or_else(|| vec![1.0; length]);
+        let is_outside = |i: &usize| !window.contains(interval * *i as f64, interval);
+        (0..length).filter(is_outside).for_each(|i| weights[i] = 0.0);
+        if weights.iter().any(|weight| *weight > 0.0) {
+            return Ok(Some(weights));
+        }
+        let (from, to, duration) = (window.from, window.to, interval * length as f64);
+        let what = format!("the force window from {from} s to {to} s covers no sample");
+        Err(FrfError::outside(format!("{what} of a record of {duration} s")))
     }
 }

@@ -5,9 +5,8 @@ use std::ops::Range;
 use fmm_record::{Complex64, RealTransform};
 use pulp::Arch;
 
-use crate::average::window::Windows;
-use crate::baseline::Baseline;
-use crate::channel::Channel;
+use crate::average::options::AverageOptions;
+use crate::channel::{Baseline, Channel};
 use crate::error::FrfError;
 
 /// Number of trials whose spectra are kept. Adding up two at a time saves a third of the time, which goes into memory
@@ -36,13 +35,7 @@ pub(crate) struct TrialTransform {
 
 impl TrialTransform {
     /// A transform of `length` samples, `interval` (s) apart.
-    pub(crate) fn new(
-        length: usize,
-        interval: f64,
-        windows: &Windows,
-        force_baseline: Baseline,
-        response_baseline: Baseline,
-    ) -> Result<Self, FrfError> {
+    pub(crate) fn new(length: usize, interval: f64, options: &AverageOptions) -> Result<Self, FrfError> {
         let plan = RealTransform::new(length);
         let side = |channel, unit, baseline, weights| Side {
             channel,
@@ -54,12 +47,12 @@ impl TrialTransform {
         Ok(Self {
             samples: vec![0.0; length],
             scratch: plan.scratch(),
-            force: side(Channel::Force, "N", force_baseline, windows.force_weights(length, interval)?),
+            force: side(Channel::Force, "N", options.force_baseline.clone(), options.force_weights(length, interval)?),
             response: side(
                 Channel::Response,
                 "(unit of the response)",
-                response_baseline,
-                windows.response_weights(length, interval),
+                options.response_baseline.clone(),
+                options.response_weights(length, interval),
             ),
             plan,
         })
@@ -70,8 +63,7 @@ impl TrialTransform {
         let Self { plan, samples, scratch, force: force_side, response: response_side } = self;
         for (side, given) in [(&*force_side, force), (&*response_side, response)] {
             if given.len() != samples.len() {
-                let (channel, expected, found) = (side.channel, samples.len(), given.len());
-                return Err(FrfError::sample_count(channel, expected, found));
+                return Err(FrfError::sample_count(side.channel, samples.len(), given.len()));
             }
         }
         let mut force_energy = 0.0;

@@ -1,6 +1,6 @@
 //! Weights on the samples of a trial before it is transformed.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use fmm_model::ModelError;
 
@@ -24,7 +24,7 @@ pub enum Taper {
 
 impl Taper {
     /// The weight of sample `index` of `length`.
-    fn weight(self, index: usize, length: usize) -> f64 {
+    pub(super) fn weight(self, index: usize, length: usize) -> f64 {
         let hann = |period: usize| 0.5 * (1.0 - (TAU * index as f64 / period.max(1) as f64).cos());
         match self {
             Self::Rectangular => 1.0,
@@ -42,9 +42,8 @@ impl Taper {
 /// it into a pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceWindow {
-    from: f64,
-    to: f64,
-    flank: f64,
+    pub(super) from: f64,
+    pub(super) to: f64,
 }
 
 impl ForceWindow {
@@ -56,39 +55,12 @@ impl ForceWindow {
     pub fn new(from: f64, to: f64) -> Result<Self, FrfError> {
         ModelError::require_finite("the start of the force window", from, "s")?;
         ModelError::require_positive("the duration of the force window", to - from, "s")?;
-        Ok(Self { from, to, flank: 0.0 })
+        Ok(Self { from, to })
     }
 
-    /// The same window with half-cosine flanks of `duration` (s) added before and after it.
-    ///
-    /// # Errors
-    /// [`ModelError::Negative`](crate::ModelError::Negative) for the duration.
-    pub fn with_flanks(mut self, duration: f64) -> Result<Self, FrfError> {
-        self.flank = ModelError::require_not_negative("the duration of a flank", duration, "s")?;
-        Ok(self)
-    }
-
-    /// Beginning (s) of the full weight.
-    pub fn from(&self) -> f64 {
-        self.from
-    }
-
-    /// End (s) of the full weight.
-    pub fn to(&self) -> f64 {
-        self.to
-    }
-
-    /// The weight at `time` (s), which rounding of 1e-6 of an `interval` (s) must not change.
-    fn weight(&self, time: f64, interval: f64) -> f64 {
-        let time = time + 1e-6 * interval;
-        let outside = (self.from - time).max(time - self.to);
-        if (self.from..self.to).contains(&time) {
-            1.0
-        } else if outside < self.flank {
-            0.5 * (1.0 + (PI * outside / self.flank).cos())
-        } else {
-            0.0
-        }
+    /// True for a sample at `time` (s), which rounding of 1e-6 of an `interval` (s) must not change.
+    pub(super) fn contains(&self, time: f64, interval: f64) -> bool {
+        (self.from..self.to).contains(&(time + 1e-6 * interval))
     }
 }
 
@@ -131,55 +103,12 @@ impl ExponentialWindow {
     pub fn decay_rate(&self) -> f64 {
         self.decay_rate
     }
-
-    /// 2mσ, the viscous damping (N s/m) that the window adds to a machine of moving `mass` m (kg).
-    pub fn added_damping(&self, mass: f64) -> f64 {
-        2.0 * mass * self.decay_rate
-    }
-}
-
-/// All weights on a trial together; without windows by default.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Windows {
-    pub(crate) taper: Taper,
-    pub(crate) force: Option<ForceWindow>,
-    pub(crate) exponential: Option<ExponentialWindow>,
-}
-
-impl Windows {
-    /// Weights of the response for `length` samples every `interval` (s); `None` if all are one.
-    pub(crate) fn response_weights(&self, length: usize, interval: f64) -> Option<Vec<f64>> {
-        if self.taper == Taper::Rectangular && self.exponential.is_none() {
-            return None;
-        }
-        let decay_rate = self.exponential.map_or(0.0, |window| window.decay_rate);
-        let weight = |i| self.taper.weight(i, length) * (-decay_rate * interval * i as f64).exp();
-        Some((0..length).map(weight).collect())
-    }
-
-    /// Weights of the force; `None` if all are one.
-    ///
-    /// # Errors
-    /// [`FrfError::Outside`] if none but zero is left.
-    pub(crate) fn force_weights(&self, length: usize, interval: f64) -> Result<Option<Vec<f64>>, FrfError> {
-        let Some(window) = self.force else { return Ok(self.response_weights(length, interval)) };
-        let mut weights = self.response_weights(length, interval).unwrap_or_else(|| vec![1.0; length]);
-        for (i, weight) in weights.iter_mut().enumerate() {
-            *weight *= window.weight(interval * i as f64, interval);
-        }
-        if weights.iter().any(|weight| *weight > 0.0) {
-            Ok(Some(weights))
-        } else {
-            let (from, to, duration) = (window.from, window.to, interval * length as f64);
-            let what = format!("the force window from {from} s to {to} s covers no sample");
-            Err(FrfError::outside(format!("{what} of a record of {duration} s")))
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::average::options::AverageOptions;
 
     #[test]
     fn hann_windows_follow_their_conventions() {
@@ -198,16 +127,12 @@ mod tests {
     #[test]
     fn a_force_window_keeps_the_pulse() {
         let window = ForceWindow::new(0.01, 0.02).unwrap();
-        let windows = Windows { force: Some(window), ..Windows::default() };
+        let windows = AverageOptions::default().force_window(window);
         let weights = windows.force_weights(400, 1e-4).unwrap().unwrap();
         // The samples 100 to 199, though neither end is a binary fraction.
         assert_eq!(weights.iter().sum::<f64>(), 100.0);
         assert_eq!((weights[99], weights[100], weights[199], weights[200]), (0.0, 1.0, 1.0, 0.0));
-        let soft = Windows { force: Some(window.with_flanks(1e-3).unwrap()), ..Windows::default() };
-        let weights = soft.force_weights(400, 1e-4).unwrap().unwrap();
-        assert!((weights[95] - 0.5).abs() < 1e-5 && (weights[205] - 0.5).abs() < 1e-5, "{}", weights[95]);
-        assert_eq!((weights[89], weights[211]), (0.0, 0.0));
-        let outside = Windows { force: Some(ForceWindow::new(5.0, 6.0).unwrap()), ..Windows::default() };
+        let outside = AverageOptions::default().force_window(ForceWindow::new(5.0, 6.0).unwrap());
         assert!(matches!(outside.force_weights(400, 1e-4), Err(FrfError::Outside { .. })));
     }
 
@@ -216,7 +141,6 @@ mod tests {
         for (from, to) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
             assert!(ForceWindow::new(from, to).is_err(), "{from} s to {to} s");
         }
-        assert!(ForceWindow::new(0.0, 1.0).unwrap().with_flanks(-1.0).is_err());
         for fraction in [0.0, 1.0, 2.0, -0.1, f64::NAN] {
             assert!(ExponentialWindow::reaching(fraction, 1.0).is_err(), "{fraction}");
         }

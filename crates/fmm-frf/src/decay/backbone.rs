@@ -191,24 +191,31 @@ impl Backbone {
         let centres = (half..values.len() - half).step_by((half / 2).max(1));
         let mut locals: Vec<Local> = centres.map(|centre| taken.local(centre, frequency, &fixed)).collect();
         // A frequency that moves far within the record is followed.
-        let slips = |local: &Local| ((local.frequency - frequency) * half as f64 / record.rate() * TAU).abs() > SLIP;
+        let slips =
+            |local: &Local| ((local.frequency.value - frequency) * half as f64 / record.rate() * TAU).abs() > SLIP;
         if locals.iter().any(slips) {
             // A window without a vibration gives any frequency.
             let within = |found: f64| {
                 let is_near = (found / frequency - 1.0).abs() < NEAR;
                 if is_near { found } else { frequency }
             };
-            let mut at = within(locals[0].frequency);
+            let mut at = within(locals[0].frequency.value);
             for local in &mut locals {
                 for _ in 0..SETTLING {
                     let Some(moved) = taken.regression(at) else { break };
                     *local = taken.local(local.centre, at, &moved);
-                    at = within(local.frequency);
+                    at = within(local.frequency.value);
                 }
             }
         }
-        let locals = decaying(&locals, half);
-        let points: Vec<BackbonePoint> = locals.iter().map(|local| local.point(record, orders)).collect();
+        // On a straight spring.
+        let point = |local: Local| BackbonePoint {
+            time: record.time(local.centre),
+            amplitude: local.amplitude.scaled(1.0 / (TAU * local.frequency.value).powi(orders)),
+            frequency: local.frequency,
+            damping: local.rate.scaled(2.0),
+        };
+        let points: Vec<BackbonePoint> = decaying(&locals, half).into_iter().map(point).collect();
         if points.is_empty() {
             return Err(no_fit("no window lies between the greatest amplitude and the end of the decay"));
         }
@@ -218,8 +225,14 @@ impl Backbone {
     /// With the spring that `points` on a straight spring show.
     fn corrected(mut points: Vec<BackbonePoint>, window: f64, record: &Record, orders: i32) -> Self {
         let spring = spring_terms(&points);
+        // On a spring with terms k₃ and k₅ the action, not the square of the amplitude, decays with c/m, and a
+        // derivative of this many orders does not go with the amplitude.
         for point in &mut points {
-            point.correct(&spring, orders);
+            let bend = bend(&spring, point.amplitude.value);
+            let factor = (1.0 + 0.5 * bend) / (1.0 + f64::from(orders) * bend);
+            if factor > 0.0 {
+                point.damping = point.damping.scaled(factor);
+            }
         }
         let power = Unit::of(record.unit()).times(&Unit::of("s").power(orders));
         Self { points, window, unit: power.to_string(), spring, orders }
@@ -349,8 +362,7 @@ impl<'a> Prepared<'a> {
 struct Local {
     centre: usize,
     amplitude: Estimated,
-    frequency: f64,
-    frequency_uncertainty: f64,
+    frequency: Estimated,
     rate: Estimated,
 }
 
@@ -382,8 +394,10 @@ impl Taken<'_> {
         Local {
             centre,
             amplitude: Estimated::new(size, deviation([amplitude.re / size, amplitude.im / size, 0.0, 0.0])),
-            frequency: frequency + turn.im * per_second / TAU,
-            frequency_uncertainty: deviation([by_first.im, by_first.re, by_second.im, by_second.re]) * per_second / TAU,
+            frequency: Estimated::new(
+                frequency + turn.im * per_second / TAU,
+                deviation([by_first.im, by_first.re, by_second.im, by_second.re]) * per_second / TAU,
+            ),
             rate: Estimated::new(
                 -turn.re * per_second,
                 deviation([by_first.re, -by_first.im, by_second.re, -by_second.im]) * per_second,
@@ -402,29 +416,4 @@ fn decaying(locals: &[Local], half: usize) -> Vec<Local> {
     let begin = if first == 0 { 0 } else { locals[first].centre + half };
     let end = locals.get(last).map_or(usize::MAX, |local| local.centre.saturating_sub(2 * half));
     locals[first..last].iter().filter(|local| local.centre >= begin && local.centre <= end).copied().collect()
-}
-
-impl Local {
-    /// The point, on a straight spring.
-    fn point(&self, record: &Record, orders: i32) -> BackbonePoint {
-        let per_displacement = (TAU * self.frequency).powi(orders);
-        BackbonePoint {
-            time: record.time(self.centre),
-            amplitude: self.amplitude.scaled(1.0 / per_displacement),
-            frequency: Estimated::new(self.frequency, self.frequency_uncertainty),
-            damping: self.rate.scaled(2.0),
-        }
-    }
-}
-
-impl BackbonePoint {
-    /// Takes into account that on a spring with terms k₃ and k₅ the action, not the square of the amplitude, decays
-    /// with c/m, and that a derivative of this many `orders` does not go with the amplitude.
-    fn correct(&mut self, spring: &[Estimated], orders: i32) {
-        let bend = bend(spring, self.amplitude.value);
-        let factor = (1.0 + 0.5 * bend) / (1.0 + f64::from(orders) * bend);
-        if factor > 0.0 {
-            self.damping = self.damping.scaled(factor);
-        }
-    }
 }

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use fmm_fit::{LinearRegression, Weighting};
 use fmm_model::{Estimated, ModelError};
 
 use crate::error::FrfError;
-use crate::least_squares::{Equations, Solution};
 
 /// The straight line of receptance peaks over impulses, and the friction force of its slope.
 ///
@@ -14,9 +14,9 @@ use crate::least_squares::{Equations, Solution};
 /// |H|_peak = b + s J,   F = π/(8 m ω₀ s)                                                               (1)
 /// ```
 ///
-/// By [`peak_receptance_of_coulomb_impact`](crate::peak_receptance_of_coulomb_impact) dry friction alone makes b zero.
+/// By [the closed form](crate::SingleDegreeOfFreedom::peak_after_impact) dry friction alone makes b zero.
 /// An intercept that is not, or points that are not on a line, tell of something else: viscous damping bends the line
-/// down ([`friction_force_of_viscous_coulomb_impact`](crate::friction_force_of_viscous_coulomb_impact) takes it out
+/// down ([`friction_after_impact`](crate::SingleDegreeOfFreedom::friction_after_impact) takes it out
 /// of each impact), friction that depends on velocity bends it either way.
 ///
 /// The points are weighed equally and the impulses taken as exact.
@@ -67,31 +67,29 @@ impl CoulombLine {
             means[1] += ModelError::require_positive("peak receptance", peak, "m/N")? / count;
         }
         // Both relative to their means, so that any unit will do.
-        let mut line = Equations::new();
-        let mut spread = 0.0;
-        for (impulse, peak) in impulses.iter().zip(peaks) {
-            let height = peak / means[1] - 1.0;
-            spread += height * height;
-            line.add([1.0, impulse / means[0] - 1.0], height);
-        }
+        let relative = |values: &[f64], mean: f64| values.iter().map(|value| value / mean - 1.0).collect::<Vec<_>>();
+        let columns: [(&str, &[f64]); 2] =
+            [("level", &vec![1.0; impulses.len()]), ("steepness", &relative(impulses, means[0]))];
         let undetermined = || FrfError::undetermined("line of peaks over impulses", impulses.len());
-        let Some(Solution { values: [level, steepness], covariance: Some(covariance), sum_of_squares }) = line.solve()
-        else {
-            return Err(undetermined());
-        };
+        let line = LinearRegression::fit(&columns, &relative(peaks, means[1]), Weighting::Equal);
+        let line = line.ok().filter(|line| line.null_directions().is_empty()).ok_or_else(undetermined)?;
+        let steepness = line.coefficients()[1];
         let slope = steepness * means[1] / means[0];
         ModelError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
-        let relative = covariance[1][1].sqrt() / steepness;
-        let intercept_variance = covariance[0][0] - 2.0 * covariance[0][1] + covariance[1][1];
-        let friction_force = friction_force_of_slope(slope, mass, natural_angular_frequency)?;
+        let relative = line.standard_uncertainty(1).ok_or_else(undetermined)? / steepness;
+        let intercept = line.predict(&[1.0, -1.0]).ok_or_else(undetermined)?;
+        ModelError::require_positive("mass", mass, "kg")?;
+        ModelError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
+        let friction_force = PI / (8.0 * mass * natural_angular_frequency * slope);
+        ModelError::require_positive("friction force", friction_force, "N")?;
         Ok(Self {
             slope: Estimated::new(slope, slope * relative),
             intercept: Estimated::new(
-                means[1] * (1.0 + level - steepness),
-                means[1] * intercept_variance.max(0.0).sqrt(),
+                means[1] * (1.0 + intercept.value()),
+                means[1] * intercept.standard_uncertainty(),
             ),
             friction_force: Estimated::new(friction_force, friction_force * relative),
-            r_squared: 1.0 - sum_of_squares / spread,
+            r_squared: line.r_squared().ok_or_else(undetermined)?,
         })
     }
 }
@@ -104,18 +102,6 @@ impl fmt::Display for CoulombLine {
             self.intercept, self.slope, self.r_squared, self.friction_force
         )
     }
-}
-
-/// F = π/(8 m ω₀ s), kinetic friction force (N) out of the `slope` s (m/N per N s) of receptance peaks over impulses.
-/// Its relative uncertainty is the root of the sum of the squares of those of the three arguments.
-///
-/// # Errors
-/// [`ModelError::NotPositive`](crate::ModelError::NotPositive) for any argument, or for a result out of range.
-fn friction_force_of_slope(slope: f64, mass: f64, natural_angular_frequency: f64) -> Result<f64, FrfError> {
-    ModelError::require_positive("slope of the peaks over the impulses", slope, "m/(N² s)")?;
-    ModelError::require_positive("mass", mass, "kg")?;
-    ModelError::require_positive("natural angular frequency", natural_angular_frequency, "rad/s")?;
-    Ok(ModelError::require_positive("friction force", PI / (8.0 * mass * natural_angular_frequency * slope), "N")?)
 }
 
 #[cfg(test)]
@@ -147,7 +133,8 @@ mod tests {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(CoulombLine::fit(&[1.0, 2.0, bad], &[1.0, 2.0, 3.0], 1.0, 1.0).is_err());
             assert!(CoulombLine::fit(&[1.0, 2.0, 3.0], &[1.0, 2.0, bad], 1.0, 1.0).is_err());
-            assert!(friction_force_of_slope(1.0, bad, 1.0).is_err() && friction_force_of_slope(1.0, 1.0, bad).is_err());
+            let of_machine = |mass, omega| CoulombLine::fit(&[1.0, 2.0, 3.0], &[2.0, 4.0, 5.0], mass, omega);
+            assert!(of_machine(bad, 1.0).is_err() && of_machine(1.0, bad).is_err());
         }
     }
 }

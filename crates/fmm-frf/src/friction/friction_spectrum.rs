@@ -142,11 +142,8 @@ impl FrictionSpectrum {
                 .fold((0.0, 0.0), |(sum, count), harmonic| (sum + 10f64.powf(harmonic.level / 10.0), count + 1.0));
             sum / count
         };
-        Ok(ModelError::require_positive(
-            "ratio of odd to even harmonics",
-            (mean_square(true) / mean_square(false)).sqrt(),
-            "",
-        )?)
+        let ratio = (mean_square(true) / mean_square(false)).sqrt();
+        Ok(ModelError::require_positive("ratio of odd to even harmonics", ratio, "")?)
     }
 }
 

@@ -7,8 +7,4 @@ mod impact;
 
 pub use coulomb_line::CoulombLine;
 pub use friction_spectrum::{FrictionSpectrum, Harmonic};
-pub use impact::{
-    coulomb_impact_duration, equivalent_damping_of_friction, friction_force_of_coulomb_impact,
-    friction_force_of_viscous_coulomb_impact, peak_receptance_of_coulomb_impact,
-    peak_receptance_of_viscous_coulomb_impact,
-};
+pub use impact::coulomb_impact_duration;

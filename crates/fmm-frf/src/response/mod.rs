@@ -6,7 +6,7 @@ mod resonances;
 
 pub use form::ResponseForm;
 pub use oscillator::SingleDegreeOfFreedom;
-pub use resonances::{Resonance, resonances};
+pub use resonances::Resonance;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -90,16 +90,6 @@ impl FrequencyResponse {
     /// Values (SI unit of the form), one for each frequency.
     pub fn values(&self) -> &[Complex64] {
         &self.values
-    }
-
-    /// The same values as those at s = σ + iω, with σ the `decay_rate` (1/s) of an exponential window on both channels;
-    /// see [`ExponentialWindow`](crate::ExponentialWindow). Conversions and modal estimates then take its damping out.
-    ///
-    /// # Errors
-    /// [`ModelError::Negative`](crate::ModelError::Negative) for the rate.
-    pub fn with_decay_rate(mut self, decay_rate: f64) -> Result<Self, FrfError> {
-        self.decay_rate = ModelError::require_not_negative("the decay rate of a window", decay_rate, "1/s")?;
-        Ok(self)
     }
 
     /// σ, decay rate (1/s) of the exponential window behind the values; 0 without one.
@@ -225,7 +215,7 @@ mod tests {
         for (low, high) in [(2.0, 1.0), (1.01, 1.2), (50.0, 60.0), (f64::NAN, 2.0), (1.0, f64::NAN)] {
             assert!(truth.within(low, high).is_err(), "{low} Hz to {high} Hz");
         }
-        assert!(truth.clone().without_delay(f64::NAN).is_err() && truth.with_decay_rate(-1.0).is_err());
+        assert!(truth.without_delay(f64::NAN).is_err());
     }
 
     /// Behind an exponential window the static receptance can be had from a velocity, as s = σ is not zero.
@@ -233,7 +223,7 @@ mod tests {
     fn a_window_moves_the_line_of_zero_frequency() {
         let values = vec![Complex64::new(0.5, 0.0), Complex64::new(1.0, 1.0)];
         let mobility = FrequencyResponse::new(ResponseForm::Mobility, vec![0.0, 1.0], values).unwrap();
-        let receptance = mobility.with_decay_rate(2.0).unwrap().converted(ResponseForm::Receptance).unwrap();
+        let receptance = FrequencyResponse { decay_rate: 2.0, ..mobility }.converted(ResponseForm::Receptance).unwrap();
         assert_eq!(receptance.values()[0], Complex64::new(0.25, 0.0));
         let back = receptance.converted(ResponseForm::Mobility).unwrap();
         assert!((back.values()[1] - Complex64::new(1.0, 1.0)).norm() < 1e-15);

@@ -15,37 +15,39 @@ pub struct Resonance {
     pub prominence: f64,
 }
 
-/// The local maxima of a response that stand out by at least `prominence` (dB), in the order of their frequencies.
-///
-/// The first and the last line do not count, and of equal neighbours only one does. It takes time in proportion to the
-/// number of lines, whatever they are. [`RationalFit`](crate::RationalFit)
-/// finds the frequency between the lines, and the damping.
-///
-/// ```
-/// use fmm_frf::{ResponseForm, SingleDegreeOfFreedom, resonances};
-///
-/// let lines: Vec<f64> = (0..80).map(|i| f64::from(i) / 8.0).collect();
-/// let machine = SingleDegreeOfFreedom::new(10.391, 8.0, 1982.0)?;
-/// let found = resonances(&machine.frequency_response(ResponseForm::Receptance, &lines)?, 6.0);
-/// assert_eq!(found.len(), 1);
-/// assert_eq!(found[0].frequency, 2.25);
-/// # Ok::<(), fmm_frf::FrfError>(())
-/// ```
-pub fn resonances(response: &FrequencyResponse, prominence: f64) -> Vec<Resonance> {
-    let heights: Vec<f64> = response.values().iter().map(|value| 20.0 * value.norm().log10()).collect();
-    let before = lowest_since_higher(heights.iter().copied(), |earlier, height| earlier <= height);
-    let mut after = lowest_since_higher(heights.iter().rev().copied(), |earlier, height| earlier < height);
-    after.reverse();
-    let mut found = Vec::new();
-    for (line, neighbours) in heights.windows(3).enumerate().map(|(i, neighbours)| (i + 1, neighbours)) {
-        let height = neighbours[1];
-        let stands_out = height - before[line].max(after[line]);
-        if height >= neighbours[0] && height > neighbours[2] && stands_out >= prominence {
-            let (frequency, magnitude) = (response.frequencies()[line], response.values()[line].norm());
-            found.push(Resonance { frequency, magnitude, prominence: stands_out });
+impl FrequencyResponse {
+    /// The local maxima of a response that stand out by at least `prominence` (dB), in the order of their frequencies.
+    ///
+    /// The first and the last line do not count, and of equal neighbours only one does. It takes time in proportion to
+    /// the number of lines, whatever they are. [`RationalFit`](crate::RationalFit) finds the frequency between the
+    /// lines, and the damping.
+    ///
+    /// ```
+    /// use fmm_frf::{ResponseForm, SingleDegreeOfFreedom};
+    ///
+    /// let lines: Vec<f64> = (0..80).map(|i| f64::from(i) / 8.0).collect();
+    /// let machine = SingleDegreeOfFreedom::new(10.391, 8.0, 1982.0)?;
+    /// let found = machine.frequency_response(ResponseForm::Receptance, &lines)?.resonances(6.0);
+    /// assert_eq!(found.len(), 1);
+    /// assert_eq!(found[0].frequency, 2.25);
+    /// # Ok::<(), fmm_frf::FrfError>(())
+    /// ```
+    pub fn resonances(&self, prominence: f64) -> Vec<Resonance> {
+        let heights: Vec<f64> = self.values().iter().map(|value| 20.0 * value.norm().log10()).collect();
+        let before = lowest_since_higher(heights.iter().copied(), |earlier, height| earlier <= height);
+        let mut after = lowest_since_higher(heights.iter().rev().copied(), |earlier, height| earlier < height);
+        after.reverse();
+        let mut found = Vec::new();
+        for (line, neighbours) in heights.windows(3).enumerate().map(|(i, neighbours)| (i + 1, neighbours)) {
+            let height = neighbours[1];
+            let stands_out = height - before[line].max(after[line]);
+            if height >= neighbours[0] && height > neighbours[2] && stands_out >= prominence {
+                let (frequency, magnitude) = (self.frequencies()[line], self.values()[line].norm());
+                found.push(Resonance { frequency, magnitude, prominence: stands_out });
+            }
         }
+        found
     }
-    found
 }
 
 /// For each height the lowest one back to the last that it does not pass, itself included.
@@ -75,7 +77,7 @@ mod tests {
         let lines = (0..decibels.len()).map(|i| i as f64).collect();
         let values = decibels.iter().map(|height| Complex64::new(10f64.powf(height / 20.0), 0.0)).collect();
         let response = FrequencyResponse::new(ResponseForm::Mobility, lines, values).unwrap();
-        resonances(&response, 0.5).iter().map(|found| (found.frequency, found.prominence)).collect()
+        response.resonances(0.5).iter().map(|found| (found.frequency, found.prominence)).collect()
     }
 
     #[test]

@@ -3,9 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use fmm_frf::{
-    Baseline, Complex64, CoulombLine, ResponseForm, SingleDegreeOfFreedom, coulomb_impact_duration,
-    friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact, impulse,
-    peak_receptance_of_coulomb_impact, peak_receptance_of_viscous_coulomb_impact,
+    Baseline, Complex64, CoulombLine, ResponseForm, SingleDegreeOfFreedom, coulomb_impact_duration, impulse,
 };
 
 use crate::table::rows;
@@ -66,36 +64,34 @@ const COULOMB_IMPACTS: [(f64, f64, f64, f64); 3] = [
 const MASS: f64 = 10.391;
 const FRICTION: f64 = 0.113 * 6.67;
 
-fn natural_angular_frequency() -> f64 {
-    SingleDegreeOfFreedom::new(MASS, 0.0, 1982.0).unwrap().natural_angular_frequency()
+fn undamped() -> SingleDegreeOfFreedom {
+    SingleDegreeOfFreedom::new(MASS, 0.0, 1982.0).unwrap()
 }
 
 #[test]
 fn receptance_peaks_of_coulomb_impacts() {
-    let omega = natural_angular_frequency();
-    for (impulse, undamped, _, damped) in COULOMB_IMPACTS {
-        let peak = peak_receptance_of_coulomb_impact(impulse, MASS, omega, FRICTION).unwrap();
+    for (impulse, undamped_peak, _, damped) in COULOMB_IMPACTS {
+        let peak = undamped().peak_after_impact(impulse, FRICTION).unwrap();
         // The amplitude falls in 9 to 16 steps instead of a ramp: of the order of 1/16² to 1/9² of the peak.
-        assert!((undamped / peak - 1.0).abs() < 0.005, "{impulse} N s: {peak} m/N, not {undamped} m/N");
+        assert!((undamped_peak / peak - 1.0).abs() < 0.005, "{impulse} N s: {peak} m/N, not {undamped_peak} m/N");
         // Viscous damping of ζ = 0.001 takes 1.6 % to 2.8 % off, the more the longer the motion lasts.
-        assert!(damped < undamped && damped / peak > 0.97, "{impulse} N s: {peak} m/N, not {damped} m/N");
+        assert!(damped < undamped_peak && damped / peak > 0.97, "{impulse} N s: {peak} m/N, not {damped} m/N");
     }
 }
 
 #[test]
 fn friction_from_receptance_peaks() {
-    let omega = natural_angular_frequency();
-    for (impulse, undamped, _, damped) in COULOMB_IMPACTS {
-        let force = friction_force_of_coulomb_impact(impulse, MASS, omega, undamped).unwrap();
+    for (impulse, undamped_peak, _, damped) in COULOMB_IMPACTS {
+        let force = undamped().friction_after_impact(impulse, undamped_peak).unwrap();
         assert!((force / FRICTION - 1.0).abs() < 0.005, "{impulse} N s: {force} N, not {FRICTION} N");
-        let force = friction_force_of_coulomb_impact(impulse, MASS, omega, damped).unwrap();
+        let force = undamped().friction_after_impact(impulse, damped).unwrap();
         assert!((force / FRICTION - 1.0).abs() < 0.03, "{impulse} N s: {force} N, not {FRICTION} N");
     }
 }
 
 #[test]
 fn coulomb_impacts_end_when_they_should() {
-    let half_period = PI / natural_angular_frequency();
+    let half_period = PI / undamped().natural_angular_frequency();
     for (impulse, _, rest, _) in COULOMB_IMPACTS {
         // The blow begins 0.01 s into the record.
         let duration = coulomb_impact_duration(impulse, FRICTION).unwrap();
@@ -108,9 +104,9 @@ fn receptance_peaks_with_viscous_damping_beside_friction() {
     let machine = SingleDegreeOfFreedom::new(MASS, 0.275, 1982.0).unwrap();
     for (impulse, _, _, damped) in COULOMB_IMPACTS {
         // What is left is that the amplitude falls in 9 to 16 steps, as without viscous damping.
-        let peak = peak_receptance_of_viscous_coulomb_impact(impulse, &machine, FRICTION).unwrap();
+        let peak = machine.peak_after_impact(impulse, FRICTION).unwrap();
         assert!((damped / peak - 1.0).abs() < 0.005, "{impulse} N s: {peak} m/N, not {damped} m/N");
-        let force = friction_force_of_viscous_coulomb_impact(impulse, &machine, damped).unwrap();
+        let force = machine.friction_after_impact(impulse, damped).unwrap();
         assert!((force / FRICTION - 1.0).abs() < 0.005, "{impulse} N s: {force} N, not {FRICTION} N");
     }
 }
@@ -118,15 +114,16 @@ fn receptance_peaks_with_viscous_damping_beside_friction() {
 /// Slopes, intercepts and R² as numpy's polyfit gives them for the same points.
 #[test]
 fn friction_from_the_slope() {
+    let omega = undamped().natural_angular_frequency();
     let impulses = COULOMB_IMPACTS.map(|(impulse, ..)| impulse);
     let undamped = COULOMB_IMPACTS.map(|(_, peak, _, _)| peak);
-    let line = CoulombLine::fit(&impulses, &undamped, MASS, natural_angular_frequency()).unwrap();
+    let line = CoulombLine::fit(&impulses, &undamped, MASS, omega).unwrap();
     assert!((line.slope.value / 3.623_979_562_36e-3 - 1.0).abs() < 1e-11, "{line}");
     assert!((line.intercept.value / 1.773_970_451_45e-5 - 1.0).abs() < 1e-8, "{line}");
     assert!((line.r_squared - 0.999_999_561_831_6).abs() < 1e-12, "{line}");
     assert!((line.friction_force.value / FRICTION - 1.0).abs() < 0.01, "{line}, not {FRICTION} N");
     let damped = COULOMB_IMPACTS.map(|(_, _, _, peak)| peak);
-    let line = CoulombLine::fit(&impulses, &damped, MASS, natural_angular_frequency()).unwrap();
+    let line = CoulombLine::fit(&impulses, &damped, MASS, omega).unwrap();
     assert!((line.slope.value / 3.458_896_448_494e-3 - 1.0).abs() < 1e-10, "{line}");
     assert!((line.r_squared - 0.999_994_787_610_7).abs() < 1e-11, "{line}");
 }

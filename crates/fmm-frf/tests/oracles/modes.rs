@@ -34,17 +34,17 @@ fn rational_fraction() {
         (mass.value, 10.400_494_249_180_197),
         (damping.value, 8.033_710_883_339_944),
         (stiffness.value, 1_983.612_273_804_027_8),
-        (fit.mode.natural_frequency.value, 2.197_968_863_876_998),
-        (fit.mode.damping_ratio.value, 0.027_966_030_059_178_42),
+        (fit.natural_frequency.value, 2.197_968_863_876_998),
+        (fit.damping_ratio.value, 0.027_966_030_059_178_42),
     ] {
         assert!((found / expected - 1.0).abs() < 1e-6, "{found}, not {expected}");
     }
-    near(fit.mode.natural_frequency, FREQUENCY, 2e-4, "natural frequency (Hz)");
-    near(fit.mode.damping_ratio, RATIO, 0.02, "damping ratio");
+    near(fit.natural_frequency, FREQUENCY, 2e-4, "natural frequency (Hz)");
+    near(fit.damping_ratio, RATIO, 0.02, "damping ratio");
     near(damping, 8.0, 0.02, "damping (N s/m)");
     assert!(fit.residual < 1e-2 * 0.125, "{} m/(N s) are left over", fit.residual);
     let with_background = RationalFit::of(&mobility(), 1.0, 4.0, Background::OtherModes).unwrap();
-    near(with_background.mode.damping_ratio, RATIO, 0.02, "damping ratio beside a background");
+    near(with_background.damping_ratio, RATIO, 0.02, "damping ratio beside a background");
     assert!(with_background.machine.is_none() && with_background.residual <= fit.residual);
 }
 
@@ -55,7 +55,7 @@ fn damping_behind_an_exponential_window() {
     let rational = RationalFit::of(&windowed, 1.0, 4.0, Background::None).unwrap();
     let [_, damping, _] = rational.machine.unwrap();
     assert!((damping.value / 8.0 - 1.0).abs() < 0.05, "rational fit: {damping} N s/m");
-    let mode = rational.mode;
+    let mode = rational;
     assert!((mode.damping_ratio.value / RATIO - 1.0).abs() < 0.05, "{mode}");
     assert!((mode.natural_frequency.value / FREQUENCY - 1.0).abs() < 2e-3, "{mode}");
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use fmm_fit::EvaluationError;
-use fmm_frf::{Complex64, RealTransform};
+use fmm_record::{Complex64, RealTransform};
 
 use crate::error::IdentifyError;
 use crate::threads::Pool;

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use fmm_frf::{Complex64, RealTransform};
+use fmm_record::{Complex64, RealTransform};
 
 use crate::residuals::autoregression::Autoregression;
 use crate::residuals::noise_growth::NoiseGrowth;

@@ -1,6 +1,6 @@
 //! One coefficient for all levels: Figs 36 to 41.
 
-use fmm_frf::{friction_force_of_coulomb_impact, friction_force_of_viscous_coulomb_impact};
+use fmm_frf::SingleDegreeOfFreedom;
 use fmm_friction::Coulomb;
 use fmm_identify::{Candidate, Experiment, Identification, ImpactTrial, Inquiry, Known, Machine, Terms, identify};
 use fmm_uq::Observations;
@@ -64,7 +64,7 @@ pub(super) fn add(
             .impulses()
             .into_iter()
             .zip(test.peaks()?)
-            .map(|(impulse, peak)| Ok(friction_force_of_viscous_coulomb_impact(impulse, &linear()?, peak)? / LOAD));
+            .map(|(impulse, peak)| Ok(linear()?.friction_after_impact(impulse, peak)? / LOAD));
         let single = Observations::new(&single.collect::<Found<Vec<_>>>()?)?;
         rows.push(vec![
             level,
@@ -136,11 +136,9 @@ fn value(found: &Identification, name: &str) -> Found<(f64, f64)> {
 fn closed_forms(blow: &Blow, spectra: &mut Spectra) -> Found<[f64; 2]> {
     let machine = linear()?;
     let (_, peak) = peak_receptance(&spectra.mobility(&blow.force, blow.velocity())?)?;
-    let (impulse, omega) = (blow.level.impulse, machine.natural_angular_frequency());
-    Ok([
-        friction_force_of_coulomb_impact(impulse, machine.mass(), omega, peak)? / LOAD,
-        friction_force_of_viscous_coulomb_impact(impulse, &machine, peak)? / LOAD,
-    ])
+    let undamped = SingleDegreeOfFreedom::new(machine.mass(), 0.0, machine.stiffness())?;
+    let impulse = blow.level.impulse;
+    Ok([undamped.friction_after_impact(impulse, peak)? / LOAD, machine.friction_after_impact(impulse, peak)? / LOAD])
 }
 
 fn joint_fit(chapter: &mut Chapter, joint: &Identification, trials: usize, rows: &mut Vec<Vec<String>>) -> Found<()> {

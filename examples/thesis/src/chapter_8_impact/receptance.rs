@@ -1,9 +1,6 @@
 //! Receptance against impulse: Figs 32 to 35.
 
-use fmm_frf::{
-    CoulombLine, FrequencyResponse, ResponseForm, peak_receptance_of_coulomb_impact,
-    peak_receptance_of_viscous_coulomb_impact,
-};
+use fmm_frf::{CoulombLine, FrequencyResponse, ResponseForm, SingleDegreeOfFreedom};
 use fmm_uq::Observations;
 
 use super::blows::{Blow, DURATION, LEVELS, RATE, SAMPLES, Spectra, Test, peak_receptance};
@@ -45,8 +42,8 @@ pub(super) fn add(chapter: &mut Chapter, blows: &[Blow], tests: &[Test], spectra
             )
             .note("half sine, μ = 0.113; 0.6 % by the shape of the pulse"),
         );
-        let dry = peak_receptance_of_coulomb_impact(level.impulse, machine.mass(), omega, friction_force())?;
-        let damped = peak_receptance_of_viscous_coulomb_impact(level.impulse, &machine, friction_force())?;
+        let dry = undamped(&machine)?.peak_after_impact(level.impulse, friction_force())?;
+        let damped = machine.peak_after_impact(level.impulse, friction_force())?;
         rows.push(vec![
             format!("{:.0}", level.peak),
             format!("{}", level.impulse),
@@ -83,6 +80,11 @@ pub(super) fn add(chapter: &mut Chapter, blows: &[Blow], tests: &[Test], spectra
     figure_32_and_33(chapter, &tests[1])?;
     figure_34(chapter, tests)?;
     figure_35(chapter, tests)
+}
+
+/// The machine without its viscous damping.
+fn undamped(machine: &SingleDegreeOfFreedom) -> Found<SingleDegreeOfFreedom> {
+    Ok(SingleDegreeOfFreedom::new(machine.mass(), 0.0, machine.stiffness())?)
 }
 
 fn line_targets(chapter: &mut Chapter, line: &CoulombLine) {
@@ -200,7 +202,7 @@ fn figure_34(chapter: &mut Chapter, tests: &[Test]) -> Found<()> {
         panel = panel.with(Role::Measured, "means of simulated trials", curve);
         let impulse = mean(&test.impulses())?;
         highest = peak_receptance(&test.mean)?.1;
-        closed.push((frequency, 1e3 * peak_receptance_of_viscous_coulomb_impact(impulse, &machine, friction_force())?));
+        closed.push((frequency, 1e3 * machine.peak_after_impact(impulse, friction_force())?));
     }
     panel = panel.with(Role::FittedPoints, "closed form, viscous and dry", closed);
     chapter.figure(
@@ -228,8 +230,8 @@ fn figure_35(chapter: &mut Chapter, tests: &[Test]) -> Found<()> {
     let line = CoulombLine::fit(&impulses, &peaks, machine.mass(), omega)?;
     let ends = [0.9, 1.72];
     let fitted = ends.map(|impulse| (impulse, 1e3 * (line.intercept.value + line.slope.value * impulse)));
-    let dry = ends.map(|impulse| peak_receptance_of_coulomb_impact(impulse, machine.mass(), omega, friction_force()));
-    let [low, high] = dry;
+    let undamped = undamped(&machine)?;
+    let [low, high] = ends.map(|impulse| undamped.peak_after_impact(impulse, friction_force()));
     let dry = vec![(ends[0], 1e3 * low?), (ends[1], 1e3 * high?)];
     let means = impulses.iter().copied().zip(peaks.iter().map(|peak| 1e3 * peak));
     let panel = Panel::new("impulse / (N s)", "largest |receptance| / (mm/N)", 360.0)
