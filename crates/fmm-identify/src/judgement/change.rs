@@ -25,7 +25,6 @@ use crate::quantities::table::Place;
 ///
 /// with the residuals r, their noise Σ and the derivatives J of the fit, and m the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct FrictionChange {
     /// w, relative change of the friction for each half cycle (1). Negative: it falls.

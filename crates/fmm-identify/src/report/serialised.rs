@@ -9,7 +9,7 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use crate::experiment::RecordSummary;
 use crate::finding::{Finding, Origin};
 use crate::identification::Identification;
-use crate::judgement::{Comparison, ScoreTest};
+use crate::judgement::{Comparison, FrictionChange, ScoreTest};
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -108,6 +108,17 @@ impl Serialize for RecordSummary {
         document.serialize_field("samples_per_measured", &self.upsampling.map_or(1, |upsampling| upsampling.factor))?;
         document.serialize_field("second_mode_hz", &self.second_mode.map(|mode| mode.frequency))?;
         document.serialize_field("second_mode_share", &self.second_mode.map(|mode| mode.share))?;
+        document.end()
+    }
+}
+
+/// Relative change with each half cycle, its standard uncertainty, and the relative error of the level over it.
+impl Serialize for FrictionChange {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut document = serializer.serialize_struct("FrictionChange", 3)?;
+        document.serialize_field("per_half_cycle", &self.per_half_cycle)?;
+        document.serialize_field("uncertainty", &self.uncertainty)?;
+        document.serialize_field("price", &self.price)?;
         document.end()
     }
 }
