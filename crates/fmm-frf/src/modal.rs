@@ -145,7 +145,9 @@ impl<const P: usize> Fitting<P> {
         let fit = fit.ok_or_else(unsettled)?;
         let measured = |value: f64, slopes: [(usize, f64); 2]| {
             let mut gradient = [0.0; P];
-            slopes.into_iter().for_each(|(at, slope)| gradient[at] += slope);
+            for (at, slope) in slopes {
+                gradient[at] += slope;
+            }
             let found = fit.predict(value, &gradient).ok_or_else(undetermined)?;
             Ok::<_, FrfError>(Estimated::new(value, found.standard_uncertainty()))
         };

@@ -142,10 +142,9 @@ impl Slice {
         };
         let series = indexed.and_then(|(_, index)| match index.split_once(',') {
             None if notation == Notation::Numpy => from_zero(index, notation).map(Series::Row),
-            None => None,
             Some((row, column)) if row.trim() == ":" => from_zero(column, notation).map(Series::Column),
             Some((row, column)) if column.trim() == ":" => from_zero(row, notation).map(Series::Row),
-            Some(_) => None,
+            _ => None,
         });
         match (indexed, series) {
             (Some((array, _)), Some(series)) => Self { array: array.trim_end().into(), series },
