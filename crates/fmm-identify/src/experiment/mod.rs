@@ -317,13 +317,18 @@ impl Experiment {
     }
 
     /// Times after the beginning of the record (s) and shares of the path slid (1) of its half cycles: that of a half
-    /// cycle is in proportion to its peak. Of a record without peaks, the beginning and the end.
+    /// cycle is in proportion to its peak above the zero of the sensor. Of a record with fewer than three peaks, the
+    /// beginning and the end.
     pub(crate) fn path_shares(&self) -> Vec<(f64, f64)> {
-        let path: f64 = self.peaks.iter().map(|(_, value)| value.abs()).sum();
+        // Where peaks fall on a line to both sides of the zero, each triple has it.
+        let zeros = self.peaks.windows(3).map(|peaks| 0.25 * (peaks[0].1 + 2.0 * peaks[1].1 + peaks[2].1));
+        let zero = zeros.sum::<f64>() / self.peaks.len().saturating_sub(2) as f64;
+        let path: f64 = self.peaks.iter().map(|(_, value)| (value - zero).abs()).sum();
+        // A zero of fewer peaks is no number.
         if !(path > 0.0) {
             return vec![(0.0, 0.5), (self.record.duration(), 0.5)];
         }
-        self.peaks.iter().map(|(time, value)| (time - self.record.start(), value.abs() / path)).collect()
+        self.peaks.iter().map(|(time, value)| (time - self.record.start(), (value - zero).abs() / path)).collect()
     }
 
     /// Ranges of samples that are fitted; what lies between them is left out.
