@@ -100,7 +100,8 @@ impl FrictionCurve {
     ///
     /// # Errors
     /// [`IdentifyError::Missing`] without an experiment, [`IdentifyError::WrongRecord`] for one that is no free
-    /// vibration, [`IdentifyError::Contradiction`] for different loads, and those of a fit that cannot begin.
+    /// vibration, [`IdentifyError::Contradiction`] for different loads, [`IdentifyError::NotSeen`] where the fit does
+    /// not end, and those of a fit that cannot begin.
     pub fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
         Self::with_terms(machine, Terms::NONE, experiments)
     }
@@ -132,6 +133,13 @@ impl FrictionCurve {
         }
         let terms = if machine.steadiness().is_some() { terms.with_change() } else { terms };
         let fit = CurveFit::of(machine, &terms, experiments)?;
+        // The intervals hold near the curve about which the record was linearised, and nowhere else.
+        if !fit.is_settled {
+            return Err(IdentifyError::not_seen(
+                "no curve of friction over speed was found that explains itself: something beside friction over speed \
+                 acts, or the record does not tell",
+            ));
+        }
         let units = Units::of(reference.record());
         let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
         let (meaning, factor, relative) = scale(machine, &units, fit.frequency);
@@ -146,9 +154,6 @@ impl FrictionCurve {
                 "residuals are {ratio:.1} times the noise and alike from sample to sample: something beside \
                  friction over speed acts, such as a spring that is not linear or friction that changes in time"
             ));
-        }
-        if !fit.is_settled {
-            limits.push("the fit did not settle: values and intervals are rough".to_owned());
         }
         Ok(Self {
             speeds: KNOTS.map(|s| s * fit.top),
