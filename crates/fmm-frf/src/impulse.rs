@@ -43,13 +43,18 @@ use crate::error::FrfError;
 /// baseline is empty or leaves the record, and [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the offset
 /// or for a sum that overflows.
 pub fn impulse(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
+    let offset = offset_of(force, interval, baseline)?;
+    Ok(ModelError::require_finite("the impulse", interval * trapezoid(force, offset), "N s")?)
+}
+
+/// Offset (N) of a `force` of at least two finite samples, one every `interval` (s).
+fn offset_of(force: &[f64], interval: f64, baseline: Baseline) -> Result<f64, FrfError> {
     ModelError::require_positive("the sampling interval", interval, "s")?;
     if force.len() < 2 {
         return Err(FrfError::too_few_samples(force.len()));
     }
     FrfError::require_samples(Channel::Force, force)?;
-    let offset = baseline.offset_of(force, "N")?;
-    Ok(ModelError::require_finite("the impulse", interval * trapezoid(force, offset), "N s")?)
+    baseline.offset_of(force, "N")
 }
 
 /// Area under at least two `samples` less their `offset`, in units of the interval, by the trapezoid rule.
@@ -119,12 +124,7 @@ impl Pulse {
     /// the baseline is empty or leaves the record, [`ModelError::NotFinite`](crate::ModelError::NotFinite) for the
     /// baseline, and [`FrfError::Values`] if nothing rises above the baseline.
     pub fn of(force: &[f64], interval: f64, baseline: Baseline) -> Result<Self, FrfError> {
-        ModelError::require_positive("the sampling interval", interval, "s")?;
-        if force.len() < 2 {
-            return Err(FrfError::too_few_samples(force.len()));
-        }
-        FrfError::require_samples(Channel::Force, force)?;
-        let offset = baseline.offset_of(force, "N")?;
+        let offset = offset_of(force, interval, baseline)?;
         let highest = |range: Range<usize>, direction: f64| {
             let heights = range.map(|i| (i, (force[i] - offset) * direction));
             heights.reduce(|best, next| if next.1 > best.1 { next } else { best })
