@@ -2,8 +2,13 @@
 
 use std::path::PathBuf;
 
+use fmm_friction::Coulomb;
 use fmm_identify::{Comparison, Experiment, Finding, Known, Machine, Preparation, Source, search};
-use fmm_record::{Quantity, Reader};
+use fmm_model::Oscillator;
+use fmm_record::{Quantity, Reader, Record};
+use fmm_sim::{Sampling, Scenario, simulate};
+
+use crate::measurement::white;
 
 /// The search by the record called `name`, of which `tests/data/trials/SOURCES.md` states the truth.
 fn searched(name: &str, machine: &Machine) -> Comparison {
@@ -86,6 +91,29 @@ fn declared_steadiness_is_in_the_uncertainty() {
     assert!(budget.contributions().any(|part| is_steadiness(part.input.name()) && part.share > 0.2), "{found}");
     assert!(distance(mu, 0.3133) < 2.0, "{found}");
     assert!(found.friction_change().is_none());
+}
+
+/// A contact that warms: friction falls to 0.7 of itself, half of it within a sixth of the record. A straight change misses
+/// that; the curved one has the mean over the path.
+#[test]
+fn a_change_that_slows_down_is_curved() {
+    let load = |time: f64| 14.0 * (0.7 + 0.3 * 0.5f64.powf(time / 1.0));
+    let loads: Vec<f64> = (0..=240).map(|step| load(0.025 * f64::from(step))).collect();
+    let oscillator = Oscillator::new(10.391, 1982.0).unwrap();
+    let scenario = Scenario::new(oscillator, Coulomb::new(0.05).unwrap(), 14.0).unwrap();
+    let scenario = scenario.under_sampled_load(0.025, loads).unwrap().starting_at(0.022, 0.0).unwrap();
+    let motion = simulate(&scenario, &Sampling::uniform(2e-3, 3000).unwrap()).unwrap();
+    let mut velocity = motion.velocity().values().to_vec();
+    let path: f64 = velocity.iter().map(|v| v.abs()).sum();
+    let weighted = velocity.iter().enumerate().map(|(i, v)| load(2e-3 * i as f64) / 14.0 * v.abs());
+    let truth = 0.05 * weighted.sum::<f64>() / path;
+    velocity.iter_mut().zip(white(3e-4, 5, 3000)).for_each(|(v, noise)| *v += noise);
+    let record = Record::new(0.0, 2e-3, velocity, Quantity::Velocity, "m/s").unwrap();
+    let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let found = search(&machine(10.391, 14.0), &[experiment]).unwrap();
+    assert!(found.preferred().law().contains("curved change"), "{found}");
+    let mu = finding(&found, "mu");
+    assert!(distance(mu, truth) < 2.5 && mu.uncertainty().unwrap() < 0.02 * truth, "{found}: {truth}");
 }
 
 /// Friction that is steady is taken for it.

@@ -118,7 +118,7 @@ const LOAD: f64 = 14.713_691_5;
 
 impl Control {
     fn read() -> Self {
-        let text = include_str!("../../../../tests/data/judgement/control.csv");
+        let text = include_str!("../../../../tests/data/trials/control.csv");
         let rows = text.lines().skip(1).filter_map(|line| line.split_once(','));
         let (times, velocities): (Vec<f64>, Vec<f64>) =
             rows.map(|(t, v)| (t.parse::<f64>().unwrap(), v.parse::<f64>().unwrap())).unzip();
