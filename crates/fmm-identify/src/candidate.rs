@@ -5,7 +5,7 @@ use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCas
 use crate::error::IdentifyError;
 use crate::law::Law;
 use crate::machine::Terms;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 
 /// A law family as a value, with terms beside it, so that laws can be chosen at run time and compared in one list.
 #[derive(Debug, Clone)]

@@ -16,7 +16,7 @@ use crate::experiment::{Drive, Experiment};
 use crate::law::DIRECTIONS;
 use crate::law::dimension::is_force;
 use crate::machine::Scale;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::machine::{Known, Machine};
 use crate::problem::Problem;
 use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};

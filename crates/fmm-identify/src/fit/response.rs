@@ -7,7 +7,7 @@ use fmm_sim::{Channels, Sampling, Trajectory};
 
 use crate::law::along::{Alignment, MeasuredMotion, SampleLocation, locations};
 use crate::linear_algebra::Span;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::threads::on_all_threads;
 

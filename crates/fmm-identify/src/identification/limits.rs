@@ -8,7 +8,7 @@ use crate::finding::Finding;
 use crate::identification::{FittedMotion, Identification};
 use crate::law::naming::LINEAR;
 use crate::machine::Scale;
-use crate::machine::terms::QUADRATIC;
+use crate::machine::term::QUADRATIC;
 use crate::problem::Problem;
 use crate::warning::Warning;
 

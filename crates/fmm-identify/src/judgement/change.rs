@@ -8,7 +8,7 @@ use crate::candidate::Candidate;
 use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
 use crate::judgement::rules::{LEAST_CHANGE, SHOWN_CHANGE};
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Place;

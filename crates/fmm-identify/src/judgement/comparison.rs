@@ -86,7 +86,8 @@ impl Comparison {
         warnings.extend(misled(&identifications, preferred));
         warnings.extend(sensor);
         let change = FrictionChange::of(&identifications[preferred], decays);
-        if asks_for_change(&identifications[preferred], decays, SHOWN_CHANGE) {
+        let asks = || asks_for_change(&identifications[preferred], decays, SHOWN_CHANGE);
+        if change.map_or_else(asks, |change| change.is_shown()) {
             warnings.push(Warning::FrictionChanges { law: identifications[preferred].law().to_owned() });
             judgement.is_decided = false;
         }

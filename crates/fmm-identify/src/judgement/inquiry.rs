@@ -16,9 +16,9 @@ use crate::identification::beside::closest;
 use crate::judgement::Comparison;
 use crate::judgement::change::with_change;
 use crate::judgement::comparison::explains;
-use crate::judgement::search::{Families, Family};
+use crate::judgement::trials::{Families, Family};
 use crate::machine::Machine;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::problem::Problem;
 
 /// Observer of the trial steps of fits by laws of these names; a break ends a fit.
@@ -214,8 +214,8 @@ impl<'a> Inquiry<'a> {
     /// # Errors
     /// Those of [`identify`], and terms that do not fit the law.
     pub fn candidate(&self, candidate: &Candidate) -> Result<Identification, IdentifyError> {
-        let end = self.end();
-        self.on_pool(|| self.fit(candidate, self.experiments, Begin::Anywhere, &self.options, end))
+        let (candidate, end) = (self.allowed(candidate), self.end());
+        self.on_pool(|| self.fit(&candidate, self.experiments, Begin::Anywhere, &self.options, end))
     }
 
     /// The comparison of `candidates` by an identification each.
@@ -226,11 +226,7 @@ impl<'a> Inquiry<'a> {
     /// Those of [`identify`], [`IdentifyError::Missing`] without a candidate, and [`IdentifyError::Contradiction`] for
     /// a candidate that is given twice.
     pub fn among(&self, candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
-        let allowed = |candidate: &Candidate| {
-            let is_open = self.machine.steadiness().is_some() && !candidate.terms.has(Term::Change);
-            with_change(candidate).filter(|_| is_open).unwrap_or_else(|| candidate.clone())
-        };
-        let candidates: Vec<Candidate> = candidates.iter().map(allowed).collect();
+        let candidates: Vec<Candidate> = candidates.iter().map(|candidate| self.allowed(candidate)).collect();
         let candidates = candidates.as_slice();
         let names: Vec<String> = candidates.iter().map(Candidate::name).collect();
         if let Some((_, twice)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
@@ -254,6 +250,12 @@ impl<'a> Inquiry<'a> {
             }
             Comparison::of(decays, candidates, identifications)
         })
+    }
+
+    /// The `candidate` with friction that changes, where it is known how little it does.
+    fn allowed(&self, candidate: &Candidate) -> Candidate {
+        let is_open = self.machine.steadiness().is_some() && !candidate.terms.has(Term::Change);
+        with_change(candidate).filter(|_| is_open).unwrap_or_else(|| candidate.clone())
     }
 
     /// End of the time limit, from now on.

@@ -8,6 +8,7 @@ mod inquiry;
 pub(crate) mod rules;
 pub(crate) mod score_test;
 mod search;
+mod trials;
 
 pub use change::FrictionChange;
 pub use comparison::Comparison;

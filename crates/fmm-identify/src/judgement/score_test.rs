@@ -14,7 +14,7 @@ use crate::identification::Identification;
 use crate::judgement::rules::{FALLS, LEAST_CHANGE, STEP};
 use crate::law::naming::LINEAR;
 use crate::machine::Terms;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::starts::Fall;
 use crate::problem::tangent::Tangent;

@@ -4,7 +4,7 @@ use fmm_fit::{EvaluationError, Options, Residuals, solve};
 use fmm_model::Parameter;
 
 use crate::machine::Terms;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::quantities::table::Table;
 
 /// Retarding force per mass over the speed, of a law with the damping beside it, in the units of a record.

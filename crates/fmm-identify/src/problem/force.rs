@@ -13,7 +13,7 @@ use crate::experiment::force::ForceRecord;
 use crate::law::along::{Alignment, SampleLocation, locations};
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Machine;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::quantities::table::{Place, Table};
 use crate::threads::Pool;
 

@@ -13,7 +13,7 @@ use crate::experiment::sight::{Seen, Sight};
 use crate::experiment::{Experiment, Experiments, scaled};
 use crate::law::naming::Units;
 use crate::law::{Law, Motion, Simulate};
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::machine::{Machine, Scale, Terms};
 use crate::problem::force::Forces;
 use crate::quantities::prior::Prior;

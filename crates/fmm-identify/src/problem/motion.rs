@@ -6,7 +6,7 @@ use fmm_model::{Damping, Oscillator, Scalar};
 use crate::experiment::Experiment;
 use crate::law::Motion;
 use crate::law::naming::Form;
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::machine::{Machine, Scale};
 use crate::quantities::table::{Place, Table, mass_of_stiffness};
 

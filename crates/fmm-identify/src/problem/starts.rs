@@ -12,7 +12,7 @@ use crate::experiment::Experiment;
 use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
-use crate::machine::terms::Term;
+use crate::machine::term::Term;
 use crate::problem::followed::FrictionCurve;
 use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
 

@@ -7,7 +7,7 @@ use crate::finding::Source;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Form, Units};
-use crate::machine::terms::{CHANGE_PER_HALF_CYCLE, Term};
+use crate::machine::term::{CHANGE_PER_HALF_CYCLE, Term};
 use crate::machine::{Machine, Scale};
 use crate::quantities::table::{Place, Table, mass_of_stiffness};
 

@@ -6,7 +6,8 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
 use crate::law::naming::{Form, Units};
-use crate::machine::terms::{Term, Terms};
+use crate::machine::Terms;
+use crate::machine::term::Term;
 use crate::quantities::table::{Builder, Knowledge, Place, Table};
 
 /// Samples of delay that are looked for unless a longest delay is given.

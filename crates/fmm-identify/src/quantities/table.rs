@@ -14,7 +14,8 @@ use crate::finding::Source;
 use crate::law::Law;
 use crate::law::dimension::is_force;
 use crate::law::naming::{Form, Units};
-use crate::machine::terms::{Term, Terms};
+use crate::machine::Terms;
+use crate::machine::term::Term;
 use crate::machine::{Known, Machine, Scale};
 
 /// Amplitude (rad) beyond which a record is not one of a pendulum with that length: no crossing counts turns.

@@ -11,7 +11,7 @@ use crate::finding::{Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
 use crate::judgement::{Comparison, ScoreTest};
-use crate::machine::terms::CHANGE_PER_HALF_CYCLE;
+use crate::machine::term::CHANGE_PER_HALF_CYCLE;
 use crate::warning::write_warnings;
 
 impl Identification {
