@@ -2,22 +2,25 @@
 
 use std::path::PathBuf;
 
-use fmm_friction::Coulomb;
-use fmm_identify::{Comparison, Experiment, Finding, Known, Machine, Preparation, Source, search};
+use fmm_friction::{Coulomb, CoulombViscous};
+use fmm_identify::{Comparison, Experiment, Finding, Known, Machine, Preparation, Source, identify, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Reader, Record};
 use fmm_sim::{Sampling, Scenario, simulate};
 
 use crate::measurement::white;
 
-/// The search by the record called `name`, of which `tests/data/trials/SOURCES.md` states the truth.
-fn searched(name: &str, machine: &Machine) -> Comparison {
+/// The record called `name`, of which `tests/data/trials/SOURCES.md` states the truth.
+fn experiment(name: &str) -> Experiment {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/trials").join(format!("{name}.csv"));
     let is_velocity = ["control", "wear_0.2_percent", "load_over_time_9"].contains(&name);
     let (quantity, unit) = if is_velocity { (Quantity::Velocity, "m/s") } else { (Quantity::Displacement, "m") };
     let record = Reader::default().quantity(quantity).unit(unit).read(path).unwrap().record;
-    let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
-    search(machine, &[experiment]).unwrap()
+    Experiment::ring_down(&record, &Preparation::default()).unwrap()
+}
+
+fn searched(name: &str, machine: &Machine) -> Comparison {
+    search(machine, &[experiment(name)]).unwrap()
 }
 
 fn machine(mass: f64, load: f64) -> Machine {
@@ -91,6 +94,8 @@ fn declared_steadiness_is_in_the_uncertainty() {
     assert!(budget.contributions().any(|part| is_steadiness(part.input.name()) && part.share > 0.2), "{found}");
     assert!(distance(mu, 0.3133) < 2.0, "{found}");
     assert!(found.friction_change().is_none());
+    let alone = identify::<CoulombViscous>(&known, &[experiment("wear_1_percent")]).unwrap();
+    assert_eq!(alone.law(), "coulomb + linear + change");
 }
 
 /// A contact that warms: friction falls to 0.7 of itself, half of it within a sixth of the record. A straight change misses

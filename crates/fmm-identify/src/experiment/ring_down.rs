@@ -266,6 +266,25 @@ mod tests {
     use super::*;
     use crate::warning::Warning;
 
+    /// A displacement whose amplitude falls on a line, with the zero of its sensor 5 mm off and in place.
+    #[test]
+    fn the_path_does_not_depend_on_the_zero_of_the_sensor() {
+        let shares = |zero: f64| {
+            let position = |t: f64| 0.02 * (1.0 - 0.4 * t) * (2.0 * PI * 3.0 * t).cos() + zero;
+            let values = (0..2000).map(|i| position(1e-3 * f64::from(i))).collect();
+            let record = Record::sampled(1000.0, values, Quantity::Displacement, "m").unwrap();
+            Experiment::ring_down(&record, &Preparation::default()).unwrap().path_shares()
+        };
+        let (off, right) = (shares(0.005), shares(0.0));
+        assert!(off.len() == right.len() && off.len() > 8, "{off:?}");
+        for (off, right) in off.iter().zip(&right) {
+            assert!((off.0 - right.0).abs() < 1e-3 && (off.1 - right.1).abs() < 1e-3, "{off:?}, {right:?}");
+        }
+        let mean: f64 = right.iter().map(|(time, share)| time * share).sum();
+        // (∫ t (1 − 0.4 t) dt)/(∫ (1 − 0.4 t) dt) over 2 s, but for the ends.
+        assert!((mean - 0.933 / 1.2).abs() < 0.06, "{mean} s");
+    }
+
     #[test]
     fn holes_are_left_out() {
         assert_eq!(without(10, [2..4, 4..5, 9..10].into_iter()), [0..2, 5..9]);

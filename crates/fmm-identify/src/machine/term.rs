@@ -21,7 +21,7 @@ pub(crate) enum Term {
     Gap,
     /// Relative change w of the friction for each second.
     Change,
-    /// Change q of that change.
+    /// Rate r at which that change slows down.
     CurvedChange,
     /// Zero of the force, F₀.
     Zero,
@@ -175,7 +175,7 @@ impl Term {
             Self::StopRatio => ("stop_stiffness_ratio", "b", Unit::default(), Bounds::NOT_NEGATIVE),
             Self::Gap => ("gap", "g", position.clone(), Bounds::NOT_NEGATIVE),
             Self::Change => (CHANGE, "w", Unit::of("1/s"), Bounds::UNBOUNDED),
-            Self::CurvedChange => ("friction_change_curvature", "q", Unit::of("1/s²"), Bounds::UNBOUNDED),
+            Self::CurvedChange => ("friction_change_slowing", "r", Unit::of("1/s"), Bounds::UNBOUNDED),
             _ => return None,
         };
         Some(Parameter::named(name, symbol, unit.to_string()).bounded(bounds))

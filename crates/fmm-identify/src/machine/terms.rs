@@ -117,7 +117,8 @@ impl Terms {
         self.with(Term::Change)
     }
 
-    /// The same with friction that changes by w τ + q τ² in the exponent: such as while a contact warms.
+    /// The same with friction whose change slows down at a rate r, such as while a contact warms: w (1 − exp(−r τ))/r
+    /// in the exponent.
     #[must_use]
     pub fn with_curved_change(self) -> Self {
         self.with(Term::CurvedChange)

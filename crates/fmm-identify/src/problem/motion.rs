@@ -90,18 +90,32 @@ impl Table {
 /// Straight pieces of a load that changes, which are within 1e-4 of an exponential of 0.8 over them.
 const PIECES: usize = 24;
 
-/// Distance in time (s) of load factors (1), and these: the exponential of a `change` (1/s) and its `curvature` (1/s²),
-/// over its mean on the path slid.
-fn changing<D: Scalar>(experiment: &Experiment, change: D, curvature: Option<D>) -> (f64, Vec<D>) {
+/// Distance in time (s) of load factors (1), and these over their mean on the path slid, for a `change` (1/s) that slows
+/// down at a rate of `slowing` (1/s):
+///
+/// ```text
+/// exp(w τ φ(r τ)),     φ(x) = (1 − e⁻ˣ)/x,     τ = t − ⟨t⟩
+/// ```
+fn changing<D: Scalar>(experiment: &Experiment, change: D, slowing: Option<D>) -> (f64, Vec<D>) {
     let shares = experiment.path_shares();
     let mean_time: f64 = shares.iter().map(|(time, share)| time * share).sum();
     let factor = |time: f64| {
         let time = time - mean_time;
         let linear = change * time;
-        curvature.map_or(linear, |curvature| linear + curvature * (time * time)).exp()
+        slowing.map_or(linear, |slowing| linear * slowed(slowing * time)).exp()
     };
     let mean = shares.iter().fold(D::from(0.0), |sum, (time, share)| sum + factor(*time) * *share);
     let end = shares.last().map_or(0.0, |(time, _)| *time) + experiment.guess.frequency().recip();
     let interval = end / PIECES as f64;
     (interval, (0..=PIECES).map(|piece| factor(piece as f64 * interval) / mean).collect())
+}
+
+/// φ(x) = (1 − e⁻ˣ)/x, near zero by its series.
+fn slowed<D: Scalar>(x: D) -> D {
+    /// |x| below which five terms of the series are exact to 1e-12 (1).
+    const SMALL: f64 = 0.01;
+    if x.value().abs() < SMALL {
+        return [120.0, -24.0, 6.0, -2.0, 1.0].into_iter().fold(D::from(0.0), |sum, by: f64| sum * x + by.recip());
+    }
+    (D::from(1.0) - (-x).exp()) / x
 }
