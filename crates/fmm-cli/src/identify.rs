@@ -209,10 +209,9 @@ fn give_out(
         print_json(&document)?;
     } else {
         let report = found.comparison.to_string();
-        // The headline of the laws, then that of the curve.
-        let (headline, rest) = report.split_once('\n').unwrap_or((&report, ""));
+        // The friction that the record shows, then the law that explains it.
         let curve = found.curve.as_ref().map_or_else(String::new, |curve| format!("{}\n", Curve::of(curve).text()));
-        print(format_args!("{}\n{headline}\n{curve}{rest}", found.origin))?;
+        print(format_args!("{}\n{curve}{report}", found.origin))?;
         if let Some(posterior) = &found.posterior {
             print(posterior.text())?;
         }

@@ -6,7 +6,7 @@
 /// use fmm_friction::{Berger, LawFamily, SearchRole, SearchStage};
 ///
 /// let SearchRole::Tried([trial]) = Berger::SEARCH else { panic!("one trial") };
-/// assert_eq!(trial.stage, SearchStage::Stribeck);
+/// assert_eq!(trial.stage, SearchStage::OfSpeed);
 /// // The law has no viscous part of its own.
 /// assert!(trial.is_damped);
 /// ```
@@ -14,14 +14,9 @@
 pub enum SearchStage {
     /// A level, a straight line, or both: tried on every record.
     Simple,
-    /// A fall with the speed from a static to a sliding level: tried if the simple laws leave a part of the motion
-    /// unexplained.
-    Stribeck,
-    /// Another change with speed or acceleration that takes two numbers: tried beside the Stribeck curves.
-    TwoNumbers,
-    /// A curve over the speed with a shape of its own: tried if correlated residuals remain. Its fit begins near the
-    /// best law so far.
-    FurtherOfSpeed,
+    /// A curve over the speed or the acceleration: tried if the simple laws leave a part of the motion unexplained. A
+    /// law of the speed is fitted only if the friction over the speed that the record shows, without a law, allows it.
+    OfSpeed,
     /// Friction that builds up over a small displacement: tried if the residuals show presliding.
     Presliding,
     /// Presliding with further parameters: tried in the same case, and begun near the best presliding law.

@@ -41,7 +41,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if either is negative or not finite.
     pub fn new {}
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::TwoNumbers.trial().damped()]
+    tried [SearchStage::OfSpeed.trial().damped()]
 }
 
 impl<D: Scalar> PiecewiseLinearLaw<D> for AccelerationCoulomb<D> {
@@ -93,7 +93,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::FurtherOfSpeed.trial().damped()]
+    tried [SearchStage::OfSpeed.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for ExponentialPair<D> {

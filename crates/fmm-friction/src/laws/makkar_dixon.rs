@@ -70,7 +70,7 @@ law_family! {
         }
     }
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::FurtherOfSpeed.trial()]
+    tried [SearchStage::OfSpeed.trial()]
 }
 
 impl<D: Scalar> MakkarDixon<D> {

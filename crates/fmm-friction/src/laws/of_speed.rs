@@ -47,7 +47,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if a parameter is negative or not finite.
     pub fn new {}
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::Stribeck.trial().damped()]
+    tried [SearchStage::OfSpeed.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Berger<D> {
@@ -88,7 +88,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if either is negative or not finite.
     pub fn new {}
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::TwoNumbers.trial().damped()]
+    tried [SearchStage::OfSpeed.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Hyperbolic<D> {
@@ -135,7 +135,7 @@ law_family! {
     /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite.
     pub fn new {}
     special cases [SpecialCase::of("coulomb_viscous")]
-    tried [SearchStage::FurtherOfSpeed.trial()]
+    tried [SearchStage::OfSpeed.trial()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for PowerLaw<D> {

@@ -45,7 +45,7 @@ law_family! {
         static_not_below(sliding, peak)?;
     }
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::FurtherOfSpeed.trial()]
+    tried [SearchStage::OfSpeed.trial()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for RegularisedStribeck<D> {
@@ -170,7 +170,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::FurtherOfSpeed.trial().damped()]
+    tried [SearchStage::OfSpeed.trial().damped()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for Karnopp<D> {

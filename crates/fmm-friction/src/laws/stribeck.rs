@@ -58,7 +58,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [SpecialCase::at("berger", &[("exponent", 1.0)]), SpecialCase::of("coulomb")]
-    tried [SearchStage::Stribeck.trial().fixing(&[("exponent", 2.0)]), SearchStage::FurtherOfSpeed.trial()]
+    tried [SearchStage::OfSpeed.trial().fixing(&[("exponent", 2.0)]), SearchStage::OfSpeed.trial()]
 }
 
 impl<D: Scalar> Stribeck<D> {
@@ -120,7 +120,7 @@ law_family! {
         static_not_below(sliding, breakaway)?;
     }
     special cases [SpecialCase::of("coulomb")]
-    tried [SearchStage::Stribeck.trial()]
+    tried [SearchStage::OfSpeed.trial()]
 }
 
 impl<D: Scalar> SlidingLaw<D> for StribeckLorentzian<D> {

@@ -13,38 +13,28 @@ use crate::error::IdentifyError;
 use crate::fit::forces::fit_forces;
 use crate::fit::response::Response;
 use crate::problem::Problem;
-use crate::problem::starts::{Fall, Fitted};
+use crate::problem::starts::Fitted;
 use crate::residuals::structure::ResidualStructure;
 use crate::threads::on_all_threads;
 
 /// Observer of the trial steps of a fit; a break ends it.
 pub(crate) type Observer<'o> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'o;
 
-/// A fit by Coulomb and viscous friction to begin another one near, and what its residuals ask for.
-pub(crate) struct Near<'a> {
-    pub(crate) simple: &'a Fitted,
-    pub(crate) falls: &'a [Fall],
-    /// Fits by other laws that describe the records better.
-    pub(crate) others: Vec<&'a Fitted>,
-    /// Number of starts beside others that are fitted, the best first.
-    pub(crate) tries: usize,
-}
+/// Starts of the fit of a problem.
+pub(crate) type Starts<'a> = dyn Fn(&Problem<'_>) -> Vec<Vec<f64>> + Sync + 'a;
 
 /// Beginning of a fit.
 #[derive(Clone, Copy)]
 pub(crate) enum Begin<'a> {
     /// Wherever the records say.
     Anywhere,
-    /// Near another fit.
-    Near(&'a Near<'a>),
+    /// At these values, of one problem or of another one that tells the same.
+    From(&'a Starts<'a>),
     /// At the end of a fit to the same records by a law that lacks some of the parameters, which begin at zero.
     Extended(&'a Fitted),
     /// At the end of a fit by the same law to the same records without filters in the sensors.
     Behind(&'a Fitted),
 }
-
-/// Iterations after which a law that still fits worse than Coulomb and viscous friction is given up.
-const ENOUGH_TO_BE_BETTER: usize = 30;
 
 /// Relative fall of the sum of squares (1) below which a search for the lowest minimum ends, and its most iterations
 /// from one start.
@@ -109,8 +99,8 @@ fn fit_by_own(
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     match begin {
-        Begin::Near(near) if !problem.has_spring() => {
-            fit_near(&problem.clone().bending_in_sight(), near, options, observer)
+        Begin::From(starts) if !problem.has_spring() => {
+            fit_from(&problem.clone().bending_in_sight(), starts, options, observer)
         }
         _ => fit_in_stages(problem, options, observer),
     }
@@ -142,47 +132,23 @@ fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observ
     best_fit(problem, problem.name(), &[found.values().to_vec()], options, observer)
 }
 
-/// The best end of the fits from the starts near a simple fit, or near one by another law, with few of the samples
-/// first. The latter is given up if it stays worse than the simple fit.
-fn fit_near(
+/// The best end of the fits from these `starts`, with few of the samples first.
+fn fit_from(
     problem: &Problem<'_>,
-    near: &Near<'_>,
+    starts: &Starts<'_>,
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    let simple = Problem::of(&Candidate::of::<CoulombViscous>(), problem.machine, problem.experiments())?;
-    let mut starts = problem.near(&simple, near.simple.fit.values(), near.falls);
-    let beside: Vec<Vec<f64>> =
-        near.others.iter().filter_map(|other| problem.beside(other, &near.others, &starts)).collect();
-    if !beside.is_empty() {
-        let mut all = problem.continued(&simple, near.simple.fit.values());
-        all.truncate(1);
-        all.extend(beside);
-        starts = lowest(problem, all, near.tries);
-    }
-    let worse = near.simple.fit.sum_of_squares() / near.simple.fit.residuals().len() as f64;
-    let (mut is_given_up, mut is_ended) = (false, false);
-    let mut observe = |progress: &Progress<'_>, residuals: usize| {
-        let is_worse = progress.sum_of_squares() > worse * residuals as f64;
-        is_given_up |= !near.others.is_empty() && progress.iterations() > ENOUGH_TO_BE_BETTER && is_worse;
-        if is_given_up && is_worse {
-            return ControlFlow::Break(());
-        }
-        let flow = observer(progress);
-        is_ended |= flow.is_break();
-        flow
-    };
+    let mut starts = starts(problem);
     let is_driven = problem.is_driven();
     if is_driven {
-        starts.extend(problem.continued(&simple, near.simple.fit.values()));
         starts = lowest(problem, starts, MOST_STARTS);
     }
     let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>], options: &Options| {
-        let mut observe = |progress: &Progress<'_>| observe(progress, problem.len());
         if is_driven {
-            fit_of_best(problem, starts, options, &mut observe)
+            fit_of_best(problem, starts, options, observer)
         } else {
-            best_fit(problem, problem.name(), starts, options, &mut observe)
+            best_fit(problem, problem.name(), starts, options, observer)
         }
     };
     let mut polish = options.clone();
@@ -191,13 +157,7 @@ fn fit_near(
         starts = vec![found.values().to_vec()];
         polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
     }
-    let found = fit(problem, &starts, &polish)?;
-    // One of several starts was given up, and a step of the better one looked like it.
-    let is_better = found.sum_of_squares() < worse * problem.len() as f64;
-    if found.outcome() == Outcome::Cancelled && !is_ended && is_better {
-        return best_fit(problem, problem.name(), &[found.values().to_vec()], &polish, observer);
-    }
-    Ok(found)
+    fit(problem, &starts, &polish)
 }
 
 /// Those of `starts` with the smallest sums of squares, at most `count`.

@@ -45,9 +45,20 @@ struct Path {
     slowest: f64,
 }
 
-impl CurveFit {
-    /// The curve that `experiments` on `machine` share, with these terms beside it.
-    pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+/// The problem of levels, about the fit by Coulomb and viscous friction.
+pub(super) struct Levelled<'a> {
+    pub(super) problem: Problem<'a>,
+    pub(super) values: Vec<f64>,
+    pub(super) top: f64,
+    /// Mean friction over the path.
+    pub(super) scale: f64,
+    /// The fit by Coulomb and viscous friction.
+    pub(super) line: Vec<f64>,
+}
+
+impl<'a> Levelled<'a> {
+    /// That of `experiments` on `machine`, with these terms beside the levels.
+    pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &'a [Experiment]) -> Result<Self, IdentifyError> {
         let simple = Problem::of(&Candidate::of::<CoulombViscous>().with(beside.clone()), *machine, experiments)?;
         let options = Options::default();
         let line = fit_begun(&simple, Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()))?;
@@ -67,16 +78,20 @@ impl CurveFit {
         values.extend(KNOTS.map(|s| level + slope * s * top));
         values.push(top);
         values.extend_from_slice(&line.values()[shared..]);
-        Self::near(&problem, values, top, scale)
+        Ok(Self { problem, values, top, scale, line: line.values().to_vec() })
     }
+}
 
-    /// The curve of `problem` from these values on.
-    fn near(problem: &Problem<'_>, mut values: Vec<f64>, top: f64, scale: f64) -> Result<Self, IdentifyError> {
+impl CurveFit {
+    /// The curve that `experiments` on `machine` share, with these terms beside it.
+    pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            values = Settled::of(&problem.with_records(&thinned), values, scale)?.values;
+            values = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS)?.values;
         }
-        let Settled { values, near, likelihood, posterior, has_ended } = Settled::of(problem, values, scale)?;
+        let Settled { values, near, likelihood, posterior, has_ended } =
+            Settled::of(problem, values, scale, MOST_STEPS)?;
         let path = Path::of(problem, &values).map_err(failure)?;
         let residual = (near.sum_of_squares() / problem.len() as f64).sqrt();
         let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
@@ -97,19 +112,24 @@ impl CurveFit {
 }
 
 /// End of the linearisations of a problem.
-struct Settled {
-    values: Vec<f64>,
-    near: Linearised,
-    likelihood: Likelihood,
+pub(super) struct Settled {
+    pub(super) values: Vec<f64>,
+    pub(super) near: Linearised,
+    pub(super) likelihood: Likelihood,
     posterior: Posterior,
     /// The mean of the posterior is the curve about which it was linearised.
     has_ended: bool,
 }
 
 impl Settled {
-    /// Linearises `problem` from these `values` on until the mean of the posterior stays, first for white noise, then
-    /// for that of the residuals.
-    fn of(problem: &Problem<'_>, mut values: Vec<f64>, scale: f64) -> Result<Self, IdentifyError> {
+    /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often, first for
+    /// white noise, then for that of the residuals.
+    pub(super) fn of(
+        problem: &Problem<'_>,
+        mut values: Vec<f64>,
+        scale: f64,
+        most: usize,
+    ) -> Result<Self, IdentifyError> {
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         let levels = problem.table.law..problem.table.law + LEVELS;
         let (prior, mut noise, mut steps) = (Prior::new(), None, 0);
@@ -131,7 +151,7 @@ impl Settled {
             }
             steps += 1;
             let step = likelihood.step(&step_of_levels(&posterior, &values[levels.clone()], scale));
-            let is_last = has_ended || steps > MOST_STEPS;
+            let is_last = has_ended || steps > most;
             match (!is_last).then(|| moved(problem, &near, &values, &step, likelihood.variance)).flatten() {
                 Some(moved) => values = moved,
                 None => return Ok(Self { values, near, likelihood, posterior, has_ended }),

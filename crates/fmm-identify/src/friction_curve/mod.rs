@@ -5,6 +5,7 @@ mod level;
 mod levels;
 mod likelihood;
 mod mixture;
+pub(crate) mod projection;
 mod report;
 mod rules;
 
@@ -17,11 +18,11 @@ use crate::experiment::Experiment;
 use crate::friction_curve::fit::CurveFit;
 use crate::friction_curve::levels::{KNOTS, LEVELS, weights};
 use crate::friction_curve::mixture::Posterior;
+use crate::friction_curve::projection::friction;
 use crate::friction_curve::rules::DRAWS;
 use crate::identification::Identification;
 use crate::law::naming::Units;
 use crate::machine::{Machine, Scale, Terms};
-use crate::problem::followed::friction;
 use crate::quantities::table::{Table, mass_of_stiffness};
 
 /// Friction over the speed as ring-downs show it, without a law: the whole resistance to the motion, of the contact and
@@ -278,7 +279,7 @@ impl FrictionCurve {
         let (table, _) = Table::of(model, found.machine(), experiments).ok()?;
         let at = |step: u32| {
             let speed = self.speeds[LEVELS - 1] * (f64::from(step) / f64::from(POINTS)).powi(2);
-            Some((speed, self.unit_factor * friction(&table, &model.terms, values, speed, false)?))
+            Some((speed, self.unit_factor * friction(&table, values, speed, false)?))
         };
         (1..=POINTS).map(at).collect()
     }

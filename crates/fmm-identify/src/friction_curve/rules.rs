@@ -34,6 +34,18 @@ pub(super) const LEAST_WEIGHT: f64 = 1e-5;
 /// Linearisations at most. Origin: chosen; three to six are the rule.
 pub(super) const MOST_STEPS: usize = 20;
 
+/// The same before laws are projected (1). Origin: the misfits of laws are then known better than they have to be.
+pub(super) const MOST_STEPS_OF_PROJECTION: usize = 8;
+
+/// Iterations of a law on the friction that is shown, and the relative fall of its misfit below which it ends (1).
+/// Origin: chosen; a fit to the record follows.
+pub(super) const MOST_ITERATIONS: usize = 60;
+pub(super) const ENOUGH: f64 = 1e-4;
+
+/// Precision of a combination of levels over the greatest below which the record does not tell it (1). Origin:
+/// rounding of products.
+pub(super) const LOST: f64 = 1e-12;
+
 /// Change of a level over its standard uncertainty below which the curve has settled (1). Origin: chosen, far below
 /// anything that is stated.
 pub(super) const SETTLED: f64 = 0.05;

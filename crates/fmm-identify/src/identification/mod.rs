@@ -8,6 +8,8 @@ mod limits;
 mod motion;
 mod profile;
 
+use std::f64::consts::PI;
+
 use fmm_fit::{Estimate, EvaluationError, Fit, Options};
 use fmm_friction::Role;
 
@@ -273,6 +275,14 @@ impl Identification {
             && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT_FALL)
     }
 
+    /// Linear damping per mass at a `share` of the critical one, over √(2π) of its standard uncertainty (1): the evidence
+    /// against damping that may be anywhere below, over that at its best value. `None` where it has no uncertainty.
+    pub(crate) fn range_of_damping(&self, share: f64) -> Option<f64> {
+        let of = |name: &str| self.findings().iter().find(|finding| finding.parameter().name() == name);
+        let u = of(LINEAR)?.uncertainty().filter(|u| *u > 0.0)?;
+        Some(4.0 * PI * share * of("natural_frequency_hz")?.value() / ((2.0 * PI).sqrt() * u))
+    }
+
     /// Headline quantities: the friction at large speed and at rest, as coefficient, force or per mass, whichever is
     /// known; of a law without friction the damping.
     pub(crate) fn main_findings(&self) -> Vec<&Finding> {
@@ -289,7 +299,10 @@ impl Identification {
             let names = FORMS.map(|form| level_name(parameter.parameter().name(), false, form));
             names.iter().rev().find_map(|name| self.finding(name).filter(|finding| finding.parameter().unit() == unit))
         });
-        std::iter::once(sliding).chain(at_rest).collect()
+        let at_rest: Vec<&Finding> = at_rest.collect();
+        // A level on its bound, which the motion nears at speeds that it never had, is no result.
+        let is_open = sliding.value() == 0.0 && !at_rest.is_empty();
+        Some(sliding).filter(|_| !is_open).into_iter().chain(at_rest).collect()
     }
 
     /// Names of the findings of the first level, as friction per mass, force and coefficient; empty for laws without.

@@ -8,7 +8,7 @@ use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::judgement::change::{FrictionChange, asks_for_change};
 use crate::judgement::filtering::filtering_sensor;
-use crate::judgement::rules::{EVEN_WEIGHT, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
+use crate::judgement::rules::{FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::warning::Warning;
@@ -36,6 +36,8 @@ pub struct Comparison {
     pub(crate) score_tests: Vec<ScoreTest>,
     /// Change of the friction during the records that the preferred law leaves out.
     pub(crate) change: Option<FrictionChange>,
+    /// Names of the laws that the friction over the speed excludes without a fit.
+    pub(crate) excluded: Vec<String>,
     pub(crate) is_complete: bool,
     pub(crate) warnings: Vec<Warning>,
 }
@@ -97,6 +99,7 @@ impl Comparison {
             judgement,
             score_tests: Vec::new(),
             change,
+            excluded: Vec::new(),
             is_complete: true,
             warnings,
         })
@@ -140,11 +143,11 @@ fn unfinished(candidates: &[Candidate], identifications: &[Identification]) -> V
 /// Widens the uncertainties of the preferred law by the differences to other laws that the record does not exclude;
 /// returns a warning for each that matters.
 ///
-/// Preferring a law because the record is too short to show that it is too simple does not make it true. With the
-/// weight w of the other law the variance becomes
+/// Preferring a law because the record is too short to show that it is too simple does not make it true. Averaged over
+/// all laws that state it, with their weights w, the variance of a finding is
 ///
 /// ```text
-/// (1 − w) u² + w (u_o² + (θ − θ_o)²)
+/// Σ w_i (u_i² + (θ − θ_i)²) / Σ w_i
 /// ```
 ///
 /// # References
@@ -155,68 +158,67 @@ fn widen_for_other_laws(
     identifications: &mut [Identification],
     judgement: &Judgement,
 ) -> Vec<Warning> {
-    let preferred = judgement.preferred;
-    let mut widths: Vec<(String, f64, Option<Warning>)> = Vec::new();
-    for other in 0..candidates.len() {
-        let (own, theirs) = (&candidates[preferred], &candidates[other]);
-        let added = theirs.parameter_count().saturating_sub(own.parameter_count());
-        let own_rank = identifications[preferred].fit().rank();
-        // A parameter that ended on its bound is one more all the same.
-        let further = identifications[other].fit().rank().saturating_sub(own_rank).max(added.min(1));
-        if other == preferred
-            || !judgement.is_left(other)
-            || !judgement.is_finished[other]
-            || further == 0 && own.is_nested_in(theirs)
-        {
-            continue;
-        }
-        let is_general = candidates[preferred].is_nested_in(&candidates[other]);
-        let count = identifications[preferred].covariance.effective_count;
-        let weight =
-            judgement.weight(other, further, candidates[preferred].differs_by_damping(&candidates[other]), count);
-        // Where the record does not decide, either law is as good as the other.
-        let weight = if judgement.is_decided && is_general { weight } else { weight.max(EVEN_WEIGHT) };
-        for (own, theirs) in identifications[preferred].common_findings(&identifications[other]) {
+    let preferred = &identifications[judgement.preferred];
+    let weights = judgement.weights(candidates, identifications);
+    let mut averages: Vec<Average> = Vec::new();
+    for (other, weight) in
+        weights.into_iter().enumerate().filter(|(other, weight)| *other != judgement.preferred && *weight > 0.0)
+    {
+        for (own, theirs) in preferred.common_findings(&identifications[other]) {
             let (Some(u), Some(their_u)) = (own.uncertainty(), theirs.uncertainty()) else { continue };
             // A law that leaves the value open says nothing of it.
             if their_u > theirs.value().abs() && !own.is_of_record() {
                 continue;
             }
-            let difference = own.value() - theirs.value();
-            let widened = ((1.0 - weight) * u * u + weight * (their_u * their_u + difference * difference)).sqrt();
-            let notable = widened > NOTABLE_WIDENING * u && !own.is_of_record();
-            let warning = notable.then(|| Warning::DependsOnLaw {
-                parameter: own.parameter().name().to_owned(),
-                law: candidates[other].name(),
-                finding: theirs.quantity(),
+            let name = own.parameter().name();
+            let place = averages.iter().position(|average| average.name == name).unwrap_or_else(|| {
+                let start = Average { name: name.to_owned(), weights: 1.0, sum: u * u, largest: 0.0, warning: None };
+                averages.push(start);
+                averages.len() - 1
             });
-            widths.push((own.parameter().name().to_owned(), widened, warning));
+            let square = weight * (their_u * their_u + (own.value() - theirs.value()).powi(2));
+            let average = &mut averages[place];
+            average.weights += weight;
+            average.sum += square;
+            if square > average.largest && !own.is_of_record() {
+                average.largest = square;
+                average.warning = Some(Warning::DependsOnLaw {
+                    parameter: name.to_owned(),
+                    law: candidates[other].name(),
+                    finding: theirs.quantity(),
+                });
+            }
         }
     }
-    // The widest counts, and one line says so.
-    widths.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut warnings = Vec::new();
-    let mut names: Vec<String> = Vec::new();
-    for (name, widened, warning) in widths {
-        if names.contains(&name) {
-            continue;
-        }
-        if let Some(own) = identifications[preferred].findings.iter_mut().find(|own| own.parameter().name() == name) {
-            let narrow = own.uncertainty().unwrap_or(widened);
-            own.add(Source::OtherLaws, (widened * widened - narrow * narrow).max(0.0).sqrt());
-        }
-        warnings.extend(warning);
-        names.push(name);
+    let mut warnings: Vec<(f64, Warning)> = Vec::new();
+    for Average { name, weights, sum, warning, .. } in averages {
+        let preferred = &mut identifications[judgement.preferred];
+        let Some(own) = preferred.findings.iter_mut().find(|own| own.parameter().name() == name) else { continue };
+        let (narrow, wide) = (own.uncertainty().unwrap_or(0.0), (sum / weights).sqrt());
+        own.add(Source::OtherLaws, (wide * wide - narrow * narrow).max(0.0).sqrt());
+        warnings.extend(warning.filter(|_| wide > NOTABLE_WIDENING * narrow).map(|warning| (wide / narrow, warning)));
     }
-    // Several names of one quantity need one line: the one that is farthest from the fit.
-    let last = warnings.pop();
-    let of_law =
-        |warning: &Warning, law: &str| matches!(warning, Warning::DependsOnLaw { law: other, .. } if other == law);
-    if let Some(Warning::DependsOnLaw { law, .. }) = &last {
-        warnings.retain(|warning| !of_law(warning, law));
-    }
-    warnings.extend(last);
-    warnings
+    // Several names of one quantity need one line for each law: the one that is farthest from the fit.
+    warnings.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut laws: Vec<String> = Vec::new();
+    warnings.retain(|(_, warning)| {
+        let Warning::DependsOnLaw { law, .. } = warning else { return true };
+        let is_new = !laws.contains(law);
+        laws.push(law.clone());
+        is_new
+    });
+    warnings.into_iter().map(|(_, warning)| warning).collect()
+}
+
+/// Average of one finding over the laws that state it.
+struct Average {
+    name: String,
+    /// Σ w_i and Σ w_i (u_i² + (θ − θ_i)²).
+    weights: f64,
+    sum: f64,
+    /// Largest term of that sum by another law, and the warning about it.
+    largest: f64,
+    warning: Option<Warning>,
 }
 
 impl Comparison {
@@ -272,6 +274,12 @@ impl Comparison {
     /// ```
     pub fn friction_change(&self) -> Option<FrictionChange> {
         self.change
+    }
+
+    /// Names of the laws that a search did not fit, as the friction over the speed that the records show without a law
+    /// is far from all that they can state.
+    pub fn excluded(&self) -> &[String] {
+        &self.excluded
     }
 
     /// All laws of the search were tried; false if a time limit ended it.

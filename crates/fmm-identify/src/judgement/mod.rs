@@ -23,6 +23,7 @@ use crate::finding::Finding;
 use crate::identification::Identification;
 use crate::judgement::rules::{
     BADLY_KNOWN, CLOSE, DOUBTED, DUE_TO_DAMPING, EQUAL_MISFIT, EXCLUDED, LEAST_COUNT, ROUNDING_OF_SQUARES, UNFIT,
+    USUAL_DAMPING,
 };
 
 /// Judgement of several laws beside the one that fits the records best: the laws that are left, and the preferred one.
@@ -148,12 +149,33 @@ impl Judgement {
         !is_general && !is_the_same && self.scores[place] < self.scores[preferred] + CLOSE
     }
 
-    /// The weight of the law at `general`, of which the preferred one is a special case, beside the preferred one (1):
-    /// the ratio of their probabilities by Akaike's criterion where the one has only a viscous part more, as every
-    /// machine has some, and by Schwarz' for about `count` independent residuals otherwise.
-    pub(crate) fn weight(&self, general: usize, further: usize, is_damping: bool, count: f64) -> f64 {
-        let gain = self.misfits[self.preferred] - self.misfits[general];
-        let penalty = if is_damping { 2.0 } else { count.max(LEAST_COUNT).ln() };
-        1.0 / (1.0 + (-0.5 * (gain - further as f64 * penalty)).exp())
+    /// Weight of each law (1), the preferred one having 1: the ratio of their probabilities. A law that is excluded, or
+    /// was not fitted to its lowest minimum, has none.
+    ///
+    /// ```text
+    /// −2 ln w = D − D_p + (k − k_p) ln n,     for damping alone   D − D_p + 2 ln (4π ζ f₀/√(2π) u(c/m))
+    /// ```
+    ///
+    /// The first is Schwarz' criterion for n independent residuals. The second is the ratio of evidences if a machine may
+    /// have any damping up to a share ζ of the critical one: the less a record tells of it, the more it has to be
+    /// allowed for.
+    pub(crate) fn weights(&self, candidates: &[Candidate], identifications: &[Identification]) -> Vec<f64> {
+        let preferred = &identifications[self.preferred];
+        let penalty = preferred.covariance.effective_count.max(LEAST_COUNT).ln();
+        let rank = |i: usize| identifications[i].parameters_used() as f64;
+        let weight = |i: usize| {
+            if i == self.preferred {
+                return 1.0;
+            }
+            if !(self.is_left(i) && self.is_finished[i]) {
+                return 0.0;
+            }
+            let further = rank(i) - rank(self.preferred);
+            let is_damped = further == 1.0 && candidates[i].differs_by_damping(&candidates[self.preferred]);
+            let of_damping = identifications[i].range_of_damping(USUAL_DAMPING).filter(|_| is_damped);
+            let penalty = of_damping.map_or(further * penalty, |range| 2.0 * range.max(1.0).ln().min(0.5 * penalty));
+            (-0.5 * (self.misfits[i] - self.misfits[self.preferred] + penalty)).exp()
+        };
+        (0..identifications.len()).map(weight).collect()
     }
 }

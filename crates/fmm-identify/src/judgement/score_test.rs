@@ -16,7 +16,6 @@ use crate::law::naming::LINEAR;
 use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
-use crate::problem::starts::Fall;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Place;
 use crate::residuals::rules::{SIGNIFICANT, SIGNIFICANT_FALL};
@@ -70,16 +69,6 @@ impl ScoreTest {
     /// The size in standard uncertainties (1).
     pub fn significance(&self) -> f64 {
         self.size / self.uncertainty
-    }
-
-    /// Friction that falls with the speed, if it is of that kind.
-    pub(crate) fn fall(&self) -> Option<Fall> {
-        match self.extension {
-            Extension::FallsWithSpeed(speed) => {
-                Some(Fall { speed, size: self.size, significance: self.significance() })
-            }
-            _ => None,
-        }
     }
 
     /// Chance alone gives a size as large in one test of a hundred or fewer.

@@ -8,21 +8,24 @@ use fmm_friction::{Coulomb, CoulombViscous, LawFamily, SearchStage};
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, Experiments};
-use crate::fit::stages::{Begin, Near};
+use crate::fit::stages::Begin;
+use crate::friction_curve::projection::ShownFriction;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
+use crate::judgement::Judgement;
 use crate::judgement::change::{asks_for_change, with_change};
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::inquiry::{Inquiry, is_past};
 use crate::judgement::rules::{
-    ASKED_CHANGE, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
+    ALLOWED, ASKED_CHANGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING,
+    STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
 use crate::judgement::trials::{CORNERS, SPRINGS, Trial, beside};
-use crate::judgement::{Judgement, shortcomings};
 use crate::machine::term::Term;
-use crate::problem::starts::Fall;
+use crate::problem::Problem;
+use crate::problem::starts::Fitted;
 use crate::threads::on_all_threads;
 use crate::warning::Warning;
 
@@ -30,11 +33,12 @@ impl Inquiry<'_> {
     /// The comparison of as many laws as vibrations ask for.
     ///
     /// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals
-    /// are correlated: laws whose friction changes with speed, and springs that harden, soften, meet a stop or have a
-    /// gap if there is a sign of one; then, unless such a spring explains the records, further families, each begun
-    /// where its friction over the speed follows that of the best law so far; and laws with presliding if there is a
-    /// sign of it. The tests are in [`Comparison::score_tests`]. Laws that cannot be fitted to the end, and that are
-    /// then far from others, are left out; a warning names them, and one each law that cannot be fitted at all.
+    /// are correlated: the laws of the catalogue that the friction over the speed allows, which the records show without
+    /// a law, each begun where it follows that friction best; springs that harden, soften, meet a stop or have a gap if
+    /// there is a sign of one; and laws with presliding if there is a sign of it. The tests are in
+    /// [`Comparison::score_tests`], the laws that are excluded without a fit in [`Comparison::excluded`]. Laws that
+    /// cannot be fitted to the end, and that are then far from others, are left out; a warning names them, and one each
+    /// law that cannot be fitted at all.
     ///
     /// # Errors
     /// Those of [`identify`](crate::identify), for a parameter that no law has, and for forces along motions.
@@ -52,12 +56,12 @@ impl Inquiry<'_> {
         if !self.held.is_empty() {
             self.require_known(decays)?;
         }
-        let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, None)?;
+        let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, From::Records)?;
         let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
         let mut decays = decays;
         if let Some(drifting) = &drifting {
             let with_drift =
-                Run { decays: drifting, ..run }.fit(run.candidates(self.at(SearchStage::Simple))?, None)?;
+                Run { decays: drifting, ..run }.fit(run.candidates(self.at(SearchStage::Simple))?, From::Records)?;
             if explains(&with_drift.identifications) {
                 (decays, found) = (drifting, with_drift);
             }
@@ -65,65 +69,9 @@ impl Inquiry<'_> {
         let run = Run { decays, ..run };
         run.fit_changes(&mut found, Found::simple)?;
         let (mut tests, mut left_out) = run.score_tests(&found);
-        let falls: Vec<Fall> = tests.iter().filter_map(ScoreTest::fall).collect();
         let changes = found.changes();
-        if changes {
-            // A fit with a change may take what a law that falls with the speed would explain.
-            let unknown =
-                |trial: &Trial| found.candidates.iter().all(|known| known.law_name() != trial.candidate.law_name());
-            let falling = self.at(SearchStage::Stribeck).into_iter().filter(unknown);
-            let falling = run.fit(run.candidates(falling)?, found.near(&falls, &[], 0).as_ref())?;
-            found.add(falling);
-        }
-        if found.asks_for_more(&tests) || changes && !found.changes() {
-            let falling = run.fit(run.candidates(self.of_speed())?, found.near(&falls, &[], 0).as_ref())?;
-            found.add(falling);
-            let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
-            // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
-            // comparison.
-            let is_filtered = || {
-                let behind = behind_filter(decays, &found.identifications).ok().flatten();
-                behind.is_some_and(|(found, _)| !found.structure.is_correlated())
-            };
-            if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
-                let bent = run.fit(run.candidates(beside(&SPRINGS))?, found.near(&falls, &[], 0).as_ref())?;
-                found.add(bent);
-                if found.is_structured() {
-                    let with_corners = run.fit(run.candidates(beside(&CORNERS))?, None)?;
-                    found.add(with_corners);
-                }
-            }
-            let limited =
-                |most: usize| self.options.clone().with_max_iterations(most.min(self.options.max_iterations()));
-            let (of_speed, limited_more) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
-            let run = Run { options: &of_speed, ..run };
-            // If a spring explains the records, no friction of the speed does.
-            if found.is_structured() || !(found.is_bent() || found.changes()) {
-                let further = found.unfinished().chain(run.candidates(self.at(SearchStage::FurtherOfSpeed))?).collect();
-                let further = run.fit(further, found.near(&falls, &[|_| true], 1).as_ref())?;
-                found.add(further);
-            }
-            // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
-            // moves where the machine turns.
-            let steps = decays.iter().map(|decay| {
-                let summary = decay.summary();
-                summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
-            });
-            let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
-            let is_seen = |test: &ScoreTest| {
-                test.extension == Extension::Presliding && test.significance() > SEEN_PRESLIDING && test.size > least
-            };
-            if tests.iter().any(is_seen) {
-                let run = Run { options: &limited_more, ..run };
-                let with_state =
-                    run.fit(run.candidates(self.at(SearchStage::Presliding))?, found.near(&falls, &[], 0).as_ref())?;
-                found.add(with_state);
-                let with_state = run.fit(
-                    run.candidates(self.at(SearchStage::FurtherPresliding))?,
-                    found.near(&falls, &[preslides], 2).as_ref(),
-                )?;
-                found.add(with_state);
-            }
+        if changes || found.asks_for_more(&tests) {
+            run.fit_further(&mut found, &tests, changes)?;
         }
         run.fit_changes(&mut found, Found::preferred)?;
         if self.machine.steadiness().is_some() {
@@ -134,6 +82,7 @@ impl Inquiry<'_> {
         left_out.extend(found.failures());
         let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
         comparison.score_tests = tests;
+        comparison.excluded = found.excluded;
         comparison.warnings.extend(left_out);
         comparison.is_complete = !found.is_cut_short;
         if found.is_cut_short {
@@ -153,6 +102,8 @@ struct Found {
     identifications: Vec<Identification>,
     /// Names of the laws that could not be fitted, with a warning each.
     failures: Vec<(String, Warning)>,
+    /// Names of the laws that the friction over the speed excludes without a fit.
+    excluded: Vec<String>,
     is_cut_short: bool,
 }
 
@@ -160,6 +111,7 @@ impl Found {
     /// Adds further fits; of two fits by one law the better stays.
     fn add(&mut self, further: Self) {
         self.is_cut_short |= further.is_cut_short;
+        self.excluded.extend(further.excluded);
         self.failures.extend(further.failures);
         for (candidate, found) in further.candidates.into_iter().zip(further.identifications) {
             match self.identifications.iter_mut().find(|known| known.law() == found.law()) {
@@ -173,26 +125,10 @@ impl Found {
         }
     }
 
-    /// Fits near which another one begins: that by Coulomb and viscous friction, and the closest to the records of each
-    /// of `kinds`, with the number of `tries`.
-    fn near<'a>(&'a self, falls: &'a [Fall], kinds: &[fn(&Identification) -> bool], tries: usize) -> Option<Near<'a>> {
-        let simple = self.simple()?;
-        let others =
-            kinds.iter().filter_map(|is_kind| closest(self.identifications.iter().filter(|found| is_kind(found))));
-        Some(Near { simple: &simple.fitted, falls, others: others.map(|other| &other.fitted).collect(), tries })
-    }
-
     /// Warnings about the laws that could not be fitted in any try.
     fn failures(&mut self) -> impl Iterator<Item = Warning> + '_ {
         let failures = std::mem::take(&mut self.failures).into_iter();
         failures.filter(|(law, _)| self.candidates.iter().all(|known| known.name() != *law)).map(|(_, warning)| warning)
-    }
-
-    /// Laws whose fits have not ended in their lowest minimum.
-    fn unfinished(&self) -> impl Iterator<Item = Candidate> {
-        let all = self.candidates.iter().enumerate();
-        all.filter(|(place, _)| !shortcomings(*place, &self.candidates, &self.identifications).is_empty())
-            .map(|(_, candidate)| candidate.clone())
     }
 
     /// Leaves out the laws whose fits have not ended in their lowest minimum and are far from what other laws reach;
@@ -230,11 +166,6 @@ impl Found {
         self.preferred().is_some_and(|preferred| preferred.fitted.model.terms.has(Term::Change))
     }
 
-    /// The best law is one on a spring that is not linear.
-    fn is_bent(&self) -> bool {
-        self.preferred().is_some_and(|preferred| preferred.fitted.model.terms.has_spring())
-    }
-
     fn preferred(&self) -> Option<&Identification> {
         let judgement = Judgement::of(&self.candidates, &self.identifications)?;
         Some(&self.identifications[judgement.preferred])
@@ -257,6 +188,23 @@ fn preslides(found: &Identification) -> bool {
     found.finding("contact_stiffness_per_mass").is_some()
 }
 
+/// Beginning of the fits of a search.
+#[derive(Clone, Copy)]
+enum From<'a> {
+    /// Where the records say: the fits without which there is no search.
+    Records,
+    /// The same for further fits.
+    Further,
+    /// On the friction over the speed that they show, and where `others` have ended.
+    Friction { shown: &'a ShownFriction, others: &'a [&'a Fitted] },
+}
+
+impl<'a> From<'a> {
+    fn of(shown: Option<&'a ShownFriction>, others: &'a [&'a Fitted]) -> Self {
+        shown.map_or(Self::Further, |shown| Self::Friction { shown, others })
+    }
+}
+
 /// A part of a search: with drift or without, by some options.
 #[derive(Clone, Copy)]
 struct Run<'a, 'i> {
@@ -272,16 +220,20 @@ impl Run<'_, '_> {
         trials.into_iter().map(|trial| self.inquiry.tried(&trial, self.decays)).collect()
     }
 
-    /// Fits the `candidates`. Those that do not begin near others are fitted after the time limit too.
-    fn fit(&self, candidates: Vec<Candidate>, near: Option<&Near<'_>>) -> Result<Found, IdentifyError> {
-        let must = near.is_none();
+    /// Fits the `candidates`. Those that begin where the records say are fitted after the time limit too.
+    fn fit(&self, candidates: Vec<Candidate>, from: From<'_>) -> Result<Found, IdentifyError> {
+        let must = matches!(from, From::Records);
         let end = self.end.filter(|_| !must);
         let mut found = Found::default();
+        let starts = |problem: &Problem<'_>| match from {
+            From::Friction { shown, others } => shown.starts(problem, others),
+            _ => problem.starts(),
+        };
         let fit = |candidate: &Candidate| {
             if is_past(end) {
                 return None;
             }
-            let begin = near.map_or(Begin::Anywhere, Begin::Near);
+            let begin = if let From::Friction { .. } = from { Begin::From(&starts) } else { Begin::Anywhere };
             Some(self.inquiry.fit(candidate, self.decays.into(), begin, self.options, end))
         };
         let results = on_all_threads(candidates.iter().collect(), fit);
@@ -301,6 +253,88 @@ impl Run<'_, '_> {
             }
         }
         Ok(found)
+    }
+
+    /// Adds fits by the laws that the friction over the speed allows; then, where more is asked for, by springs that are
+    /// not linear and by laws with presliding. A simple law `changes` if its friction changes during the records.
+    fn fit_further(&self, found: &mut Found, tests: &[ScoreTest], changes: bool) -> Result<(), IdentifyError> {
+        let limited = |most: usize| {
+            let options = &self.inquiry.options;
+            options.clone().with_max_iterations(most.min(options.max_iterations()))
+        };
+        let (of_speed, of_state) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
+        let shown = ShownFriction::of(&self.inquiry.machine, self.decays).ok();
+        let of_speed = Run { options: &of_speed, ..*self };
+        let allowed = of_speed.allowed(found, shown.as_ref())?;
+        let further = of_speed.fit(allowed, From::of(shown.as_ref(), &[]))?;
+        found.add(further);
+        if changes && found.changes() && !found.asks_for_more(tests) {
+            return Ok(());
+        }
+        let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
+        // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
+        // comparison.
+        let is_filtered = || {
+            let behind = behind_filter(self.decays, &found.identifications).ok().flatten();
+            behind.is_some_and(|(found, _)| !found.structure.is_correlated())
+        };
+        if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
+            let bent = self.fit(self.candidates(beside(&SPRINGS))?, From::of(None, &[]))?;
+            found.add(bent);
+            if found.is_structured() {
+                let with_corners = self.fit(self.candidates(beside(&CORNERS))?, From::Records)?;
+                found.add(with_corners);
+            }
+        }
+        // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
+        // moves where the machine turns.
+        let steps = self.decays.iter().map(|decay| {
+            let summary = decay.summary();
+            summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
+        });
+        let least = steps.map(|step| STEPS_OF_PRESLIDING * step).fold(LEAST_PRESLIDING, f64::max);
+        let is_seen = |test: &ScoreTest| {
+            test.extension == Extension::Presliding && test.significance() > SEEN_PRESLIDING && test.size > least
+        };
+        if tests.iter().any(is_seen) {
+            let of_state = Run { options: &of_state, ..*self };
+            let first = self.inquiry.at(SearchStage::Presliding);
+            let with_state = of_state.fit(of_state.candidates(first)?, From::of(shown.as_ref(), &[]))?;
+            found.add(with_state);
+            let further = self.inquiry.at(SearchStage::FurtherPresliding);
+            let nearest = closest(found.identifications.iter().filter(|found| preslides(found)));
+            let nearest: Vec<&Fitted> = nearest.iter().map(|found| &found.fitted).collect();
+            let with_state = of_state.fit(of_state.candidates(further)?, From::of(shown.as_ref(), &nearest))?;
+            found.add(with_state);
+        }
+        Ok(())
+    }
+
+    /// The laws of the speed that the friction over the speed allows beside the best of them, and those that state
+    /// none. Those that it excludes are kept by name.
+    fn allowed(&self, found: &mut Found, shown: Option<&ShownFriction>) -> Result<Vec<Candidate>, IdentifyError> {
+        let candidates = self.candidates(self.inquiry.of_speed())?;
+        let Some(shown) = shown else { return Ok(candidates) };
+        let score = |candidate: &Candidate| {
+            let problem = Problem::of(candidate, self.inquiry.machine, self.decays).ok()?;
+            let projected = shown.projected(&problem, &[]).filter(|projected| projected.is_of_speed)?;
+            Some(projected.misfit + 2.0 * candidate.parameter_count() as f64)
+        };
+        let is_exact = self.decays.windows(2).all(|pair| pair[0].load_factor() == pair[1].load_factor());
+        let of_speed = |candidate: &&Candidate| is_exact && candidate.law.is_of_speed();
+        let scores = on_all_threads(candidates.iter().collect(), |one| Some(one).filter(of_speed).and_then(score));
+        let simple = found.simple().map(Candidate::fitted).and_then(|simple| score(&simple));
+        let best = scores.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+        let most = best + ALLOWED + INEXACT * (simple.unwrap_or(best) - best).max(0.0);
+        let mut allowed = Vec::new();
+        for (candidate, score) in candidates.into_iter().zip(scores) {
+            if score.is_some_and(|score| score > most) {
+                found.excluded.push(candidate.name());
+            } else {
+                allowed.push(candidate);
+            }
+        }
+        Ok(allowed)
     }
 
     /// Adds a fit with friction that changes during the records, if the residuals of one of `found` show a change.
@@ -347,7 +381,15 @@ impl Run<'_, '_> {
     fn fit_change(&self, found: &mut Found, base: &Identification) -> Result<Option<Identification>, IdentifyError> {
         let Some(candidate) = with_change(&Candidate::fitted(base)) else { return Ok(None) };
         let begin = Begin::Extended(&base.fitted);
-        let changed = self.inquiry.fit(&candidate, self.decays.into(), begin, self.options, None)?;
+        let most = MOST_ITERATIONS.min(self.options.max_iterations());
+        let options = self.options.clone().with_max_iterations(most);
+        let is_curved = candidate.terms.has(Term::CurvedChange);
+        let end = self.end.filter(|_| is_curved);
+        let changed = self.inquiry.fit(&candidate, self.decays.into(), begin, &options, end)?;
+        // A change that ends at once, or never, is none that slows down.
+        if is_curved && !changed.fit().outcome().is_success() {
+            return Ok(None);
+        }
         found.add(Found { candidates: vec![candidate], identifications: vec![changed.clone()], ..Found::default() });
         Ok(Some(changed))
     }

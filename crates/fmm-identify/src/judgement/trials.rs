@@ -24,19 +24,18 @@ impl Inquiry<'_> {
         families.flat_map(of_family).collect()
     }
 
-    /// Trials of laws that change with speed: Stribeck curves, simple laws beside quadratic damping, and others.
+    /// Trials of laws that change with speed, and of simple laws beside quadratic damping.
     pub(super) fn of_speed(&self) -> Vec<Trial> {
         let damped = |trial: Trial| {
             let candidate = trial.candidate.with(Terms::NONE.with(Term::QuadraticDamping));
             Trial { candidate, ..trial }
         };
-        let simple = self.at(SearchStage::Simple).into_iter().map(damped);
-        self.at(SearchStage::Stribeck).into_iter().chain(simple).chain(self.at(SearchStage::TwoNumbers)).collect()
+        self.at(SearchStage::Simple).into_iter().map(damped).chain(self.at(SearchStage::OfSpeed)).collect()
     }
 
     /// Trials of all stages but that of springs with corners.
     fn all(&self) -> impl Iterator<Item = Trial> {
-        let further = [SearchStage::FurtherOfSpeed, SearchStage::Presliding, SearchStage::FurtherPresliding];
+        let further = [SearchStage::Presliding, SearchStage::FurtherPresliding];
         let first = self.at(SearchStage::Simple).into_iter().chain(self.of_speed()).chain(beside(&SPRINGS));
         first.chain(further.into_iter().flat_map(|stage| self.at(stage)))
     }
@@ -188,23 +187,23 @@ mod tests {
                 "viscous",
                 "coulomb",
                 "coulomb_viscous",
-                "berger + linear",
-                "stribeck, exponent = 2",
-                "stribeck_lorentzian",
                 "viscous + quadratic",
                 "coulomb + quadratic",
                 "coulomb_viscous + quadratic",
                 "acceleration_coulomb + linear",
-                "hyperbolic + linear",
-                "coulomb_viscous + cubic spring",
-                "coulomb_viscous + cubic spring + quintic spring",
-                "coulomb_viscous + quadratic + cubic spring + quintic spring",
+                "berger + linear",
+                "stribeck, exponent = 2",
                 "stribeck",
+                "stribeck_lorentzian",
+                "hyperbolic + linear",
                 "power_law",
                 "exponential_pair + linear",
                 "makkar_dixon",
                 "regularised_stribeck",
                 "karnopp + linear",
+                "coulomb_viscous + cubic spring",
+                "coulomb_viscous + cubic spring + quintic spring",
+                "coulomb_viscous + quadratic + cubic spring + quintic spring",
                 "dahl + linear, exponent = 1",
                 "lugre, exponent = 2",
                 "bouc_wen + linear, amplitude = 1",
@@ -220,7 +219,7 @@ mod tests {
         impl LawFamily for Own {
             const NAME: &'static str = "own";
             const PARAMETERS: &'static [LawParameter] = Berger::PARAMETERS;
-            const SEARCH: SearchRole = SearchRole::Tried(&[SearchStage::TwoNumbers.trial().damped()]);
+            const SEARCH: SearchRole = SearchRole::Tried(&[SearchStage::OfSpeed.trial().damped()]);
             type At<D: Scalar> = Berger<D>;
 
             fn at<D: Scalar>(values: &[D]) -> Result<Berger<D>, LawError> {

@@ -20,7 +20,6 @@ use crate::quantities::prior::Prior;
 use crate::quantities::table::{Place, Table};
 
 mod declared;
-pub(crate) mod followed;
 pub(crate) mod force;
 mod motion;
 mod parts;
@@ -402,7 +401,7 @@ fn require_together(machine: &Machine, experiments: &[Experiment]) -> Result<(),
 
 #[cfg(test)]
 mod tests {
-    use fmm_friction::{CoulombViscous, Stribeck};
+    use fmm_friction::CoulombViscous;
     use fmm_model::Oscillator;
     use fmm_record::Quantity;
     use fmm_record::Record;
@@ -467,26 +466,5 @@ mod tests {
         // Off the bounds, so that differences have room.
         let p: Vec<f64> = problem.starts()[0].iter().map(|value| value + 1e-3).collect();
         require_derivatives(&problem, &p);
-    }
-
-    /// A law put beside another begins with its friction over the speed, and with its oscillator and initial state.
-    #[test]
-    fn a_law_beside_another_begins_with_its_friction() {
-        let decays = &decays()[..1];
-        let other = crate::identify::<CoulombViscous>(&Machine::per_unit_mass(), decays).unwrap();
-        let machine = Machine::per_unit_mass();
-        let problem = Problem::of(&Candidate::of::<Stribeck>(), machine, decays).unwrap();
-        let start = problem.beside(&other.fitted, &[&other.fitted], &problem.starts()).unwrap();
-        let law = problem.table.of_law();
-        let steady = |speed: f64| problem.law().steady(&start[law.clone()], speed, true).unwrap();
-        let known = |name: &str| other.finding(name).unwrap().value();
-        let speed = decays[0].scales().1;
-        for share in [0.01, 0.1, 0.5, 1.0] {
-            let expected = known("friction_per_mass") + known("damping_per_mass") * share * speed;
-            let got = steady(share * speed);
-            assert!((got - expected).abs() < 1e-4 * expected, "{got} in place of {expected} at {share}");
-        }
-        assert_eq!(start[0], known("natural_frequency_hz"));
-        assert_eq!(start[law.end..], other.fit().values()[3..]);
     }
 }

@@ -330,8 +330,10 @@ mod tests {
         let decays = &decays[..1];
         let problem = Problem::of(&Candidate::of::<Coulomb>().with(terms), Machine::per_unit_mass(), decays).unwrap();
         let mut p = values(&problem);
-        let change = problem.parameters().iter().position(|parameter| parameter.name() == "friction_change").unwrap();
-        p[change] = -0.2;
+        let place = |name: &str| problem.parameters().iter().position(|parameter| parameter.name() == name).unwrap();
+        // Friction that grows ever faster: the motion has fewer reversals than differences may spoil.
+        p[place("friction_change")] = 0.4;
+        p[place("friction_change_slowing")] = -0.3;
         require_derivatives(&problem, &p);
     }
 

@@ -13,8 +13,7 @@ use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::term::Term;
-use crate::problem::followed::FrictionCurve;
-use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
+use crate::quantities::table::{Knowledge, Place, Row, mass_of_stiffness};
 
 /// Start value of the excess of a static level, as a share of the sliding one (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;
@@ -26,16 +25,9 @@ pub(crate) struct Fitted {
     pub(crate) fit: Fit,
 }
 
-/// Friction that falls with the speed, as residuals ask for it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fall {
-    /// Speed over which it falls by 1/e, as a share of the largest (1).
-    pub(crate) speed: f64,
-    /// Fall over the level of friction (1).
-    pub(crate) size: f64,
-    /// Fall over its standard uncertainty (1).
-    pub(crate) significance: f64,
-}
+/// Shares of the largest speed over which friction may fall, at which a law begins, and the fall over its level (1).
+const FALLS: [f64; 4] = [0.02, 0.06, 0.2, 0.5];
+const FALL: f64 = 0.3;
 
 impl Problem<'_> {
     /// True if a measured force or motion drives one of the records.
@@ -189,57 +181,23 @@ impl Problem<'_> {
         starts
     }
 
-    /// Start values near a fit of `simple`, with what its residuals ask for: the most significant `falls` of friction
-    /// with the speed; and the same losses without it.
-    pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64], falls: &[Fall]) -> Vec<Vec<f64>> {
-        if !simple.table.is_per_mass() || !self.is_elaborate() {
+    /// Start values near a fit of `simple`: its losses, put into the law in as many ways as it offers, and friction that
+    /// falls with the speed over some share of the largest one.
+    pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
+        if self.table.oscillator != simple.table.oscillator || !self.is_elaborate() {
             return self.starts();
         }
         let (oscillator, rest) = values.split_at(simple.table.oscillator);
         let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
-        let own = &values[simple.table.shared..];
-        let mut falls = falls.to_vec();
-        falls.sort_by(|a, b| b.significance.total_cmp(&a.significance));
-        falls.truncate(2);
-        if falls.is_empty() {
-            falls = [0.06, 0.3].map(|speed| Fall { speed, size: 0.3, significance: 0.0 }).to_vec();
-        }
-        if !self.law().fitted().any(|parameter| self.law().bends(parameter)) {
-            falls.truncate(1);
-        }
-        let bends_at = |share: f64| self.law().bend().map_or(1.0, |typical| typical / share);
-        let mut starts = Vec::new();
-        for Fall { speed: share, size, .. } in falls {
+        let falls = if self.law().fitted().any(|parameter| self.law().bends(parameter)) { &FALLS[..] } else { &[0.2] };
+        let falling = falls.iter().map(|share| {
+            let sharpness = self.law().bend().map_or(1.0, |typical| typical / share);
             let mut start = oscillator.to_vec();
-            self.push_dissipation_with(dissipation, bends_at(share), Some(size.clamp(0.05, 2.0)), &mut start);
-            start.extend_from_slice(own);
-            starts.push(self.clamped(&start));
-        }
-        starts
-    }
-
-    /// Start values that put this law where `other` has ended: the same friction over the speed, as nearly as it can,
-    /// and what else has the same name there or in one of `others`; `None` if one of the two laws states no friction
-    /// over the speed.
-    pub(crate) fn beside(&self, other: &Fitted, others: &[&Fitted], starts: &[Vec<f64>]) -> Option<Vec<f64>> {
-        if !self.table.is_per_mass() {
-            return None;
-        }
-        let fitted = &other.fit;
-        let (table, _) = Table::of(&other.model, &self.machine, &self.experiments).ok()?;
-        let curve =
-            FrictionCurve::of(&table, &other.model.terms, fitted.values(), reference(&self.experiments).scales().1)?;
-        let own = &fitted.values()[table.shared..];
-        let of_that_name = |(value, parameter): (&f64, &Parameter)| {
-            let mut estimates = std::iter::once(&other).chain(others).flat_map(|other| other.fit.estimates());
-            estimates.find(|estimate| estimate.name() == parameter.name()).map_or(*value, Estimate::value)
-        };
-        let continued = |start: &Vec<f64>| {
-            let shared = start.iter().zip(&self.parameters).take(self.table.shared).map(of_that_name);
-            self.clamped(&shared.chain(own.iter().copied()).collect::<Vec<_>>())
-        };
-        let starts: Vec<Vec<f64>> = starts.iter().map(continued).collect();
-        curve.followed(&self.table, self.terms(), &self.parameters, &starts)
+            self.push_dissipation_with(dissipation, sharpness, Some(FALL), &mut start);
+            start.extend_from_slice(&values[simple.table.shared..]);
+            self.clamped(&start)
+        });
+        falling.chain(self.continued(simple, values)).collect()
     }
 
     /// The `start` with values of the law that lie [apart](crate::law::Law::apart), each within its bounds.

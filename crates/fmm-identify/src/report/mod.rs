@@ -155,6 +155,10 @@ impl fmt::Display for Comparison {
                 score - best,
             )?;
         }
+        if !self.excluded().is_empty() {
+            let shown = "excluded without a fit by the friction over the speed that the record shows";
+            writeln!(f, "  {shown}: {}", self.excluded().join("; "))?;
+        }
         let significant: Vec<&ScoreTest> = self.score_tests().iter().filter(|test| test.is_significant()).collect();
         for test in &significant {
             writeln!(f, "  {test}")?;

@@ -134,18 +134,19 @@ impl Serialize for ScoreTest {
     }
 }
 
-/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` (names), `complete`, `signs`, `friction_change` (of the preferred law), `p`
-/// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
+/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` and `excluded_without_fit` (names),
+/// `complete`, `signs`, `friction_change` (of the preferred law), `p` and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
 /// are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 12)?;
+        let mut document = serializer.serialize_struct("Comparison", 13)?;
         document.serialize_field("preferred", self.preferred().law())?;
         document.serialize_field("decided", &self.is_decided())?;
         document.serialize_field("summary", &self.headline())?;
         let left: Vec<&str> = self.not_excluded().map(Identification::law).collect();
         document.serialize_field("not_excluded", &left)?;
+        document.serialize_field("excluded_without_fit", self.excluded())?;
         document.serialize_field("complete", &self.is_complete())?;
         document.serialize_field("signs", self.score_tests())?;
         document.serialize_field("friction_change", &self.friction_change())?;

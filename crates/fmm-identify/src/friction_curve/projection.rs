@@ -1,0 +1,224 @@
+//! Laws projected on the friction over the speed that records show: their misfit, and where a fit by them begins.
+
+use fmm_fit::{Estimate, EvaluationError, Options, Residuals, solve};
+use fmm_friction::CoulombViscous;
+use fmm_model::Parameter;
+use nalgebra::{DMatrix, DVector};
+
+use crate::candidate::Candidate;
+use crate::error::IdentifyError;
+use crate::experiment::Experiment;
+use crate::friction_curve::fit::{Levelled, Settled};
+use crate::friction_curve::levels::{KNOTS, LEVELS};
+use crate::friction_curve::rules::{ENOUGH, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION};
+use crate::machine::term::Term;
+use crate::machine::{Machine, Terms};
+use crate::problem::Problem;
+use crate::problem::starts::Fitted;
+use crate::quantities::table::Table;
+
+/// Friction over the speed as records show it near one curve, without a law.
+///
+/// ```text
+/// D(θ) = (b(θ) − b̂)ᵀ Λ (b(θ) − b̂)
+/// ```
+///
+/// b(θ) are the levels of a law, b̂ those that fit best, Λ their precision with all else integrated out. D is the misfit
+/// of the law beside the best curve of all, as a fit to the records would have it, without a simulation.
+pub(crate) struct ShownFriction {
+    top: f64,
+    /// Names of all parameters of the curve's problem, and the first level among them.
+    names: Vec<String>,
+    first: usize,
+    settled: Settled,
+    /// R with RᵀR = Λ, and R b̂.
+    root: DMatrix<f64>,
+    best: DVector<f64>,
+    /// Fit by Coulomb and viscous friction.
+    line: Vec<f64>,
+}
+
+/// A law on the friction that records show.
+#[derive(Debug, Clone)]
+pub(crate) struct Projected {
+    /// D, beside the best curve of all in variances of the noise (1).
+    pub(crate) misfit: f64,
+    /// The friction follows the speed alone, so that D is its misfit.
+    pub(crate) is_of_speed: bool,
+    /// Values of a fit to the records that begins there.
+    pub(crate) start: Vec<f64>,
+}
+
+impl ShownFriction {
+    /// The friction over the speed that `experiments` on `machine` share.
+    pub(crate) fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        let Levelled { problem, values, top, scale, line, .. } = Levelled::of(machine, &Terms::NONE, experiments)?;
+        let thinned = problem.thinned();
+        let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
+        let settled = Settled::of(few.as_ref().unwrap_or(&problem), values, scale, MOST_STEPS_OF_PROJECTION)?;
+        let eigen = settled.likelihood.precision.clone().symmetric_eigen();
+        let least = LOST * eigen.eigenvalues.max();
+        let roots = eigen.eigenvalues.map(|value| if value > least { value.sqrt() } else { 0.0 });
+        let inverse = roots.map(|root| if root > 0.0 { root.recip() } else { 0.0 });
+        let best = inverse.component_mul(&eigen.eigenvectors.tr_mul(&settled.likelihood.information));
+        let root = DMatrix::from_diagonal(&roots) * eigen.eigenvectors.transpose();
+        let names = problem.parameters().iter().map(|parameter| parameter.name().to_owned()).collect();
+        Ok(Self { top, names, first: problem.table.law, settled, root, best, line })
+    }
+
+    /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction
+    /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name.
+    pub(crate) fn starts(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
+        match self.projected(problem, others) {
+            Some(projected) => vec![projected.start],
+            None => self.near(problem, others),
+        }
+    }
+
+    fn near(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
+        let simple = Candidate::of::<CoulombViscous>();
+        let Ok(simple) = Problem::of(&simple, problem.machine, problem.experiments()) else { return problem.starts() };
+        let of_others = |(value, parameter): (&f64, &Parameter)| {
+            let mut estimates = others.iter().flat_map(|other| other.fit.estimates());
+            estimates.find(|estimate| estimate.name() == parameter.name()).map_or(*value, Estimate::value)
+        };
+        let shared = problem.table.oscillator..problem.table.shared;
+        let near = problem.near(&simple, &self.line).into_iter().map(|mut start| {
+            let taken: Vec<f64> = start.iter().zip(problem.parameters()).map(of_others).collect();
+            start[shared.clone()].copy_from_slice(&taken[shared.clone()]);
+            problem.clamped(&start)
+        });
+        near.collect()
+    }
+
+    /// The law of `problem` where its friction over the speed is most probable, of those that a search finds; `None`
+    /// for a law that states none.
+    pub(crate) fn projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Option<Projected> {
+        let shared = problem.table.oscillator..problem.table.shared;
+        let projection =
+            Projection { shown: self, table: &problem.table, parameters: &problem.parameters()[shared.clone()] };
+        let starts = self.near(problem, others);
+        let options = Options::default().with_max_iterations(MOST_ITERATIONS).with_cost_tolerance(ENOUGH);
+        let options = options.with_polish_steps(0).with_restarts(0).with_jacobian_check(false);
+        let fits = starts.iter().filter_map(|start| {
+            let fit = solve(&projection, &start[shared.clone()], &options).ok()?;
+            Some((fit.sum_of_squares(), fit.values().to_vec()))
+        });
+        let (misfit, of_law) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let levels = projection.levels(&of_law)?;
+        let values = &self.settled.values;
+        let change = DVector::from_fn(LEVELS, |i, _| levels[i] - values[self.first + i]);
+        let moved = self.settled.near.moved(values, &self.settled.likelihood.step(&change), 1.0);
+        let value = |(place, parameter): (usize, &Parameter)| {
+            if shared.contains(&place) {
+                return of_law[place - shared.start];
+            }
+            let known = self.names.iter().position(|name| name == parameter.name());
+            known.map_or(starts[0][place], |known| moved[known])
+        };
+        let start: Vec<f64> = problem.parameters().iter().enumerate().map(value).collect();
+        let is_of_speed = starts.iter().all(|start| projection.is_of_speed(&start[shared.clone()]));
+        Some(Projected { misfit, is_of_speed, start: problem.clamped(&start) })
+    }
+}
+
+/// Friction of the law of a `table` by fitted `values`, with the damping beside it, at a `speed` that grows or, if it is
+/// `losing`, falls, in the unit of its forces; `None` for a law that states none.
+pub(super) fn friction(table: &Table, values: &[f64], speed: f64, losing: bool) -> Option<f64> {
+    let beside = |term: Term| table.terms.place(term).map_or(0.0, |place| values[table.oscillator + place]);
+    let further = beside(Term::QuadraticDamping) + beside(Term::CubicDamping) * speed;
+    let damping = beside(Term::LinearDamping) + further * speed;
+    let steady = table.family.steady(&values[table.of_law()], speed, losing)?;
+    let power = beside(Term::PowerDamping) * speed.powf(beside(Term::PowerExponent));
+    Some(steady + damping * speed + power)
+}
+
+/// The least-squares problem of a law on the friction that records show.
+struct Projection<'a> {
+    shown: &'a ShownFriction,
+    table: &'a Table,
+    /// Parameters of the damping and the law.
+    parameters: &'a [Parameter],
+}
+
+impl Projection<'_> {
+    /// b(θ) of damping and law by the values θ, in the mean over growing and falling speeds; that at rest is the one
+    /// just above.
+    fn levels(&self, values: &[f64]) -> Option<[f64; LEVELS]> {
+        /// Lowest speed over the top speed (1). Origin: far below the first knot.
+        const SLOW: f64 = 1e-5;
+        let mut all = vec![0.0; self.table.oscillator];
+        all.extend_from_slice(values);
+        let mut levels = [0.0; LEVELS];
+        for (level, knot) in levels.iter_mut().zip(KNOTS) {
+            let speed = knot.max(SLOW) * self.shown.top;
+            let at = |losing| friction(self.table, &all, speed, losing);
+            *level = 0.5 * (at(false)? + at(true)?);
+        }
+        Some(levels)
+    }
+
+    /// The friction is the same while the speed grows and while it falls.
+    fn is_of_speed(&self, values: &[f64]) -> bool {
+        let all = [&vec![0.0; self.table.oscillator], values].concat();
+        let at = |losing| friction(self.table, &all, 0.1 * self.shown.top, losing);
+        at(false) == at(true)
+    }
+}
+
+impl Residuals for Projection<'_> {
+    fn parameters(&self) -> &[Parameter] {
+        self.parameters
+    }
+
+    fn len(&self) -> usize {
+        LEVELS
+    }
+
+    fn evaluate(&self, p: &[f64], residuals: &mut [f64], _: Option<&mut [f64]>) -> Result<(), EvaluationError> {
+        let levels =
+            self.levels(p).ok_or_else(|| EvaluationError::message("the law states no friction over the speed"))?;
+        let levels = DVector::from_row_slice(&levels);
+        residuals.copy_from_slice((&self.shown.root * levels - &self.shown.best).as_slice());
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::Stribeck;
+    use fmm_model::Oscillator;
+    use fmm_record::{Quantity, Record};
+    use fmm_sim::{Sampling, Scenario, simulate};
+
+    use super::*;
+    use crate::experiment::Preparation;
+
+    /// Friction of 0.3 m/s² that is 0.1 m/s² larger at rest and falls over 0.05 m/s: its own law begins close to it, and
+    /// a straight line is excluded.
+    #[test]
+    fn a_law_begins_on_the_friction_that_the_record_shows() {
+        let law = Stribeck::new(0.3, 0.4, 0.05, 2.0, 0.2).unwrap();
+        let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+        let motion =
+            simulate(&scenario.starting_at(0.03, 0.0).unwrap(), &Sampling::uniform(2e-3, 1500).unwrap()).unwrap();
+        let noise = |i: usize| 6e-4 * (((i * i * 7919) % 10_007) as f64 / 10_007.0 - 0.5);
+        let velocity = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
+        let record = Record::new(0.0, 2e-3, velocity, Quantity::Velocity, "m/s").unwrap();
+        let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
+        let machine = Machine::per_unit_mass();
+        let shown = ShownFriction::of(&machine, &decays).unwrap();
+        let problem = |candidate| Problem::of(&candidate, machine, &decays).unwrap();
+        let own = problem(Candidate::of::<Stribeck>().holding("exponent", 2.0).unwrap());
+        let projected = shown.projected(&own, &[]).unwrap();
+        assert!(projected.misfit < 40.0, "{}", projected.misfit);
+        for speed in [0.01, 0.05, 0.2, 0.35] {
+            let truth = 0.3 + 0.1 * (-(speed / 0.05f64).powi(2)).exp() + 0.2 * speed;
+            let found = friction(&own.table, &projected.start, speed, false).unwrap();
+            assert!((found / truth - 1.0).abs() < 0.02, "{found} in place of {truth} at {speed}");
+        }
+        assert!((projected.start[0] - 2.0).abs() < 1e-4, "{}", projected.start[0]);
+        let line = shown.projected(&problem(Candidate::of::<CoulombViscous>()), &[]).unwrap();
+        assert!(line.misfit > projected.misfit + 100.0, "{} beside {}", line.misfit, projected.misfit);
+    }
+}
