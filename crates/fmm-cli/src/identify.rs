@@ -7,6 +7,7 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use crate::figure::{drawn, histogram, label};
 use crate::files;
@@ -189,8 +190,12 @@ fn give_out(
     if let Some(path) = &arguments.report {
         files::require_writable(path)?;
     }
+    let begun = Instant::now();
     let mut found = found(arguments, candidates)?;
     found.curve = with_curve.then(|| {
+        if arguments.question.is_over(begun) {
+            return Err("the time limit is over".to_owned());
+        }
         let curve = FrictionCurve::beside(found.comparison.preferred(), std::slice::from_ref(&found.decay));
         curve.map_err(|error| error.to_string())
     });

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::str::FromStr;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use fmm_fit::Progress;
@@ -154,6 +154,11 @@ impl Question {
             return Self { law: vec!["all".to_owned()], ..self.clone() }.candidates();
         }
         self.candidates()
+    }
+
+    /// True if the time limit of a search that has `begun` then is over.
+    pub(crate) fn is_over(&self, begun: Instant) -> bool {
+        self.time_limit.is_some_and(|limit| begun.elapsed().as_secs_f64() >= limit)
     }
 
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {

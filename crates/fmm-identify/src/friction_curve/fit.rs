@@ -36,7 +36,6 @@ pub(super) struct CurveFit {
     pub(super) slowest: f64,
     /// Residual over noise, if it is too large and no noise.
     pub(super) excess: Option<f64>,
-    pub(super) is_settled: bool,
 }
 
 /// Motion of all records: speeds at dense times, and the lowest at the samples of each half cycle.
@@ -88,10 +87,19 @@ impl CurveFit {
         let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            values = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS)?.values;
+            let few = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS)?;
+            // What does not settle with few samples does not with all of them.
+            if !few.has_ended {
+                return Err(not_settled());
+            }
+            values = few.values;
         }
         let Settled { values, near, likelihood, posterior, has_ended } =
             Settled::of(problem, values, scale, MOST_STEPS)?;
+        // The intervals hold near the curve about which the record was linearised, and nowhere else.
+        if !has_ended {
+            return Err(not_settled());
+        }
         let path = Path::of(problem, &values).map_err(failure)?;
         let residual = (near.sum_of_squares() / problem.len() as f64).sqrt();
         let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
@@ -106,9 +114,15 @@ impl CurveFit {
             path: path.weights(top),
             slowest: path.slowest,
             excess: (ratio > EXCESS && is_correlated).then_some(ratio),
-            is_settled: has_ended,
         })
     }
+}
+
+fn not_settled() -> IdentifyError {
+    IdentifyError::not_seen(
+        "no curve of friction over speed was found that explains itself: something beside friction over speed acts, or \
+         the record does not tell",
+    )
 }
 
 /// End of the linearisations of a problem.

@@ -163,6 +163,7 @@ impl Judgement {
         let preferred = &identifications[self.preferred];
         let penalty = preferred.covariance.effective_count.max(LEAST_COUNT).ln();
         let rank = |i: usize| identifications[i].parameters_used() as f64;
+        let own = &candidates[self.preferred];
         let weight = |i: usize| {
             if i == self.preferred {
                 return 1.0;
@@ -170,8 +171,10 @@ impl Judgement {
             if !(self.is_left(i) && self.is_finished[i]) {
                 return 0.0;
             }
-            let further = rank(i) - rank(self.preferred);
-            let is_damped = further == 1.0 && candidates[i].differs_by_damping(&candidates[self.preferred]);
+            // A parameter that ended on its bound is one more all the same.
+            let is_general = own.is_nested_in(&candidates[i]);
+            let further = (rank(i) - rank(self.preferred)).max(if is_general { 1.0 } else { f64::NEG_INFINITY });
+            let is_damped = is_general && candidates[i].differs_by_damping(own);
             let of_damping = identifications[i].range_of_damping(USUAL_DAMPING).filter(|_| is_damped);
             let penalty = of_damping.map_or(further * penalty, |range| 2.0 * range.max(1.0).ln().min(0.5 * penalty));
             (-0.5 * (self.misfits[i] - self.misfits[self.preferred] + penalty)).exp()
