@@ -1,51 +1,32 @@
 //! Linear algebra of a few columns: the inverse of their products, and the part of a direction that they can follow.
 
+use nalgebra::DMatrix;
+
 /// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however
 /// alike they are.
-///
-/// Of columns that are alike but for rounding, one is left. The normal matrix of at most a dozen columns is swept here,
-/// column by column (Beaton): a matrix crate would be nine more to build.
 pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
-    /// Of a column of unit length, what is left below this square beside the others is rounding.
+    /// Of combinations of columns of unit length, those below this square are rounding.
     const ROUNDING: f64 = 1e-10;
     let order = columns.len();
     let product = |i: usize, j: usize| -> f64 { columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum() };
-    let scales: Vec<f64> = (0..order).map(|i| product(i, i).sqrt().recip()).collect();
-    let mut swept = vec![0.0; order * order];
-    for i in (0..order).filter(|i| scales[*i].is_finite()) {
-        for j in (i..order).filter(|j| scales[*j].is_finite()) {
-            swept[i * order + j] = product(i, j) * scales[i] * scales[j];
-            swept[j * order + i] = swept[i * order + j];
-        }
-    }
-    let mut left: Vec<usize> = (0..order).collect();
-    while let Some(place) =
-        (0..left.len()).max_by(|a, b| swept[left[*a] * (order + 1)].total_cmp(&swept[left[*b] * (order + 1)]))
-    {
-        let pivot = left[place];
-        let square = swept[pivot * (order + 1)];
-        if !(square > ROUNDING) {
-            break;
-        }
-        left.swap_remove(place);
-        let row: Vec<f64> = swept[pivot * order..(pivot + 1) * order].iter().map(|element| element / square).collect();
-        for i in (0..order).filter(|i| *i != pivot) {
-            let factor = swept[i * order + pivot];
-            for j in (0..order).filter(|j| *j != pivot) {
-                swept[i * order + j] -= factor * row[j];
-            }
-        }
-        for i in 0..order {
-            swept[i * order + pivot] = row[i];
-            swept[pivot * order + i] = row[i];
-        }
-        swept[pivot * (order + 1)] = -square.recip();
-    }
-    let element = |i: usize, j: usize| {
-        let is_left = left.contains(&i) || left.contains(&j);
-        if is_left { 0.0 } else { -swept[i * order + j] * scales[i] * scales[j] }
+    let length = |i: usize| Some(product(i, i).sqrt().recip()).filter(|scale| scale.is_finite()).unwrap_or(0.0);
+    let scales: Vec<f64> = (0..order).map(length).collect();
+    let eigen = DMatrix::from_fn(order, order, |i, j| product(i, j) * scales[i] * scales[j]).symmetric_eigen();
+    let inverse = eigen.eigenvalues.map(|square| if square > ROUNDING { square.recip() } else { 0.0 });
+    let scaled = &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.transpose();
+    (0..order * order).map(|at| (at / order, at % order)).map(|(i, j)| scaled[(i, j)] * scales[i] * scales[j]).collect()
+}
+
+/// L with L Lᵀ = A, of a covariance A of this `order` that is positive but for rounding, row by row.
+pub(crate) fn root_of_covariance(elements: &[f64], order: usize) -> Vec<f64> {
+    let deviations: Vec<f64> = (0..order).map(|i| elements[i * (order + 1)].max(0.0).sqrt()).collect();
+    let correlation = |i: usize, j: usize| {
+        let scale = deviations[i] * deviations[j];
+        if scale > 0.0 { elements[i * order + j] / scale } else { 0.0 }
     };
-    (0..order * order).map(|at| element(at / order, at % order)).collect()
+    let eigen = DMatrix::from_fn(order, order, correlation).symmetric_eigen();
+    let root = eigen.eigenvectors * DMatrix::from_diagonal(&eigen.eigenvalues.map(|square| square.max(0.0).sqrt()));
+    (0..order * order).map(|at| root[(at / order, at % order)] * deviations[at / order]).collect()
 }
 
 /// Columns of J with (JᵀJ)⁻.

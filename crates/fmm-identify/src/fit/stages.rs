@@ -139,18 +139,9 @@ fn fit_from(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    let mut starts = starts(problem);
-    let is_driven = problem.is_driven();
-    if is_driven {
-        starts = lowest(problem, starts, MOST_STARTS);
-    }
-    let mut fit = |problem: &Problem<'_>, starts: &[Vec<f64>], options: &Options| {
-        if is_driven {
-            fit_of_best(problem, starts, options, observer)
-        } else {
-            best_fit(problem, problem.name(), starts, options, observer)
-        }
-    };
+    let mut starts = lowest(problem, starts(problem), MOST_STARTS);
+    let mut fit =
+        |problem: &Problem<'_>, starts: &[Vec<f64>], options: &Options| fit_of_best(problem, starts, options, observer);
     let mut polish = options.clone();
     if let Some(thinned) = problem.thinned() {
         let found = fit(&problem.with_records(&thinned), &starts, options)?;

@@ -67,12 +67,16 @@ impl ShownFriction {
     }
 
     /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction
-    /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name.
+    /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name, or for a
+    /// law with internal state one of several values.
     pub(crate) fn starts(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
-        match self.projected(problem, others) {
-            Some(projected) => vec![projected.start],
-            None => self.near(problem, others),
-        }
+        /// Difference of misfits that makes none (1).
+        const EVEN: f64 = 1.0;
+        let projected = self.all_projected(problem, others);
+        let Some(best) = projected.first() else { return self.near(problem, others) };
+        let count = if problem.table.family.is_of_speed() { 1 } else { projected.len() };
+        let even = projected.iter().take(count).filter(|one| one.misfit < best.misfit + EVEN);
+        even.map(|one| one.start.clone()).collect()
     }
 
     fn near(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
@@ -94,18 +98,32 @@ impl ShownFriction {
     /// The law of `problem` where its friction over the speed is most probable, of those that a search finds; `None`
     /// for a law that states none.
     pub(crate) fn projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Option<Projected> {
+        self.all_projected(problem, others).into_iter().next()
+    }
+
+    /// All ends of that search, the most probable first.
+    fn all_projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Projected> {
         let shared = problem.table.oscillator..problem.table.shared;
-        let projection =
-            Projection { shown: self, table: &problem.table, parameters: &problem.parameters()[shared.clone()] };
+        let parameters = &problem.parameters()[shared.clone()];
+        let projection = Projection { shown: self, table: &problem.table, parameters };
         let starts = self.near(problem, others);
         let options = Options::default().with_max_iterations(MOST_ITERATIONS).with_cost_tolerance(ENOUGH);
         let options = options.with_polish_steps(0).with_restarts(0).with_jacobian_check(false);
-        let fits = starts.iter().filter_map(|start| {
+        let is_of_speed = starts.iter().all(|start| projection.is_of_speed(&start[shared.clone()]));
+        let end = |start: &Vec<f64>| {
             let fit = solve(&projection, &start[shared.clone()], &options).ok()?;
-            Some((fit.sum_of_squares(), fit.values().to_vec()))
-        });
-        let (misfit, of_law) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let levels = projection.levels(&of_law)?;
+            let start = self.begun(problem, start, fit.values(), &projection.levels(fit.values())?);
+            Some(Projected { misfit: fit.sum_of_squares(), is_of_speed, start })
+        };
+        let mut ends: Vec<Projected> = starts.iter().filter_map(end).collect();
+        ends.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        ends
+    }
+
+    /// Values of a fit of `problem` whose damping and law have the values `of_law` and these `levels`; what the curve's
+    /// problem does not have is that of `start`.
+    fn begun(&self, problem: &Problem<'_>, start: &[f64], of_law: &[f64], levels: &[f64; LEVELS]) -> Vec<f64> {
+        let shared = problem.table.oscillator..problem.table.shared;
         let values = &self.settled.values;
         let change = DVector::from_fn(LEVELS, |i, _| levels[i] - values[self.first + i]);
         let moved = self.settled.near.moved(values, &self.settled.likelihood.step(&change), 1.0);
@@ -114,11 +132,9 @@ impl ShownFriction {
                 return of_law[place - shared.start];
             }
             let known = self.names.iter().position(|name| name == parameter.name());
-            known.map_or(starts[0][place], |known| moved[known])
+            known.map_or(start[place], |known| moved[known])
         };
-        let start: Vec<f64> = problem.parameters().iter().enumerate().map(value).collect();
-        let is_of_speed = starts.iter().all(|start| projection.is_of_speed(&start[shared.clone()]));
-        Some(Projected { misfit, is_of_speed, start: problem.clamped(&start) })
+        problem.clamped(&problem.parameters().iter().enumerate().map(value).collect::<Vec<_>>())
     }
 }
 

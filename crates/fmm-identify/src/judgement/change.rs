@@ -7,7 +7,7 @@ use fmm_friction::{Coulomb, CoulombViscous, LawFamily};
 use crate::candidate::Candidate;
 use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
-use crate::judgement::rules::{LEAST_CHANGE, SHOWN_CHANGE};
+use crate::judgement::rules::{LEAST_CHANGE, REACH_OF_CHANGE, SHOWN_CHANGE};
 use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::tangent::Tangent;
@@ -55,9 +55,10 @@ impl FrictionChange {
         self.per_half_cycle.abs() > SHOWN_CHANGE * self.uncertainty
     }
 
-    /// The largest change for each half cycle (1) that the records would not show.
+    /// The largest change for each half cycle (1) that the records would not show: that above which a change would be
+    /// named, or that up to which this one may reach.
     pub fn largest_unseen(&self) -> f64 {
-        SHOWN_CHANGE * self.uncertainty
+        (SHOWN_CHANGE * self.uncertainty).max(self.per_half_cycle.abs() + REACH_OF_CHANGE * self.uncertainty)
     }
 }
 

@@ -11,7 +11,6 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, Experiments};
 use crate::fit::stages::Begin;
-use crate::friction_curve::projection::ShownFriction;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::judgement::Comparison;
@@ -287,15 +286,6 @@ impl<'a> Inquiry<'a> {
     ) -> Result<Identification, IdentifyError> {
         let problem = Problem::of(candidate, self.machine, experiments)?;
         let name = candidate.name();
-        let is_shown = matches!(begin, Begin::Anywhere) && problem.is_elaborate() && !problem.has_spring();
-        let shown = match experiments {
-            Experiments::Vibrations(decays) if is_shown && !problem.is_driven() => {
-                ShownFriction::of(&self.machine, decays).ok()
-            }
-            _ => None,
-        };
-        let starts = |problem: &Problem<'_>| shown.as_ref().map_or(Vec::new(), |shown| shown.starts(problem, &[]));
-        let begin = if shown.is_some() { Begin::From(&starts) } else { begin };
         Identification::of(&problem, begin, options, &mut |progress| match self.observer.lock() {
             Ok(mut observer) if !is_past(end) => observer(&name, progress),
             _ => ControlFlow::Break(()),

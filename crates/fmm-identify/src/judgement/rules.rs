@@ -89,7 +89,11 @@ pub(crate) const LEAST_CHANGE: f64 = 1e-6;
 /// two sides, as every record is asked.
 pub(crate) const SHOWN_CHANGE: f64 = 3.0;
 
-/// The same above which a change is fitted, and its misfit decides (1). Origin: one in 22 on two sides; of changes of
+/// Standard uncertainties beyond the best value up to which a change that is not shown may reach (1). Origin: one in 44
+/// on one side.
+pub(crate) const REACH_OF_CHANGE: f64 = 2.0;
+
+/// Standard uncertainties above which a change is fitted, and its misfit decides (1). Origin: one in 22 on two sides; of changes of
 /// three uncertainties five in six reach it.
 pub(crate) const ASKED_CHANGE: f64 = 2.0;
 

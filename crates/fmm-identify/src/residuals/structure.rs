@@ -5,7 +5,7 @@ use fmm_fit::{EvaluationError, Fit, autocorrelation_time};
 use crate::experiment::force::{ForceRecord, deviation};
 use crate::experiment::{Experiments, scaled};
 use crate::finding::Source;
-use crate::linear_algebra::inverse_of_products;
+use crate::linear_algebra::{inverse_of_products, root_of_covariance};
 use crate::problem::Problem;
 use crate::residuals::knowledge::Knowledge;
 use crate::residuals::noise::{ResidualNoise, Series};
@@ -192,7 +192,11 @@ impl Covariance {
         let pairs = known.iter().flat_map(|i| known.iter().map(move |j| (*i, *j)));
         let unit: Vec<f64> =
             pairs.clone().map(|(i, j)| self.elements[i * self.count + j].unwrap_or(0.0) / variance).collect();
-        let sandwich = product(&product(&unit, &self.noise.products(columns), order), &unit, order);
+        // U JᵀΣJ U = L (Zᵀ Σ Z) Lᵀ with U = L Lᵀ and the orthonormal columns Z = J L: no variance is a difference.
+        let root = root_of_covariance(&unit, order);
+        let transposed: Vec<f64> = (0..order * order).map(|at| root[at % order * order + at / order]).collect();
+        let directions: Vec<Vec<f64>> = transposed.chunks(order).map(|row| influence(row, columns)).collect();
+        let sandwich = product(&product(&root, &self.noise.products(&directions), order), &transposed, order);
         let mut counts = Vec::with_capacity(order);
         for (place, &i) in known.iter().enumerate() {
             let white = self.elements[i * (self.count + 1)].unwrap_or(f64::INFINITY);
