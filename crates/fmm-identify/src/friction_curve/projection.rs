@@ -43,8 +43,8 @@ pub(crate) struct ShownFriction {
 pub(crate) struct Projected {
     /// D, beside the best curve of all in variances of the noise (1).
     pub(crate) misfit: f64,
-    /// The friction follows the speed alone, so that D is its misfit.
-    pub(crate) is_of_speed: bool,
+    /// The friction over the speed tells all parameters of the law, so that D is its misfit.
+    pub(crate) is_told: bool,
     /// Values of a fit to the records that begins there.
     pub(crate) start: Vec<f64>,
 }
@@ -109,11 +109,11 @@ impl ShownFriction {
         let starts = self.near(problem, others);
         let options = Options::default().with_max_iterations(MOST_ITERATIONS).with_cost_tolerance(ENOUGH);
         let options = options.with_polish_steps(0).with_restarts(0).with_jacobian_check(false);
-        let is_of_speed = starts.iter().all(|start| projection.is_of_speed(&start[shared.clone()]));
+        let is_told = projection.is_told(starts.iter().map(|start| &start[shared.clone()]));
         let end = |start: &Vec<f64>| {
             let fit = solve(&projection, &start[shared.clone()], &options).ok()?;
             let start = self.begun(problem, start, fit.values(), &projection.levels(fit.values())?);
-            Some(Projected { misfit: fit.sum_of_squares(), is_of_speed, start })
+            Some(Projected { misfit: fit.sum_of_squares(), is_told, start })
         };
         let mut ends: Vec<Projected> = starts.iter().filter_map(end).collect();
         ends.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
@@ -174,11 +174,25 @@ impl Projection<'_> {
         Some(levels)
     }
 
-    /// The friction is the same while the speed grows and while it falls.
-    fn is_of_speed(&self, values: &[f64]) -> bool {
-        let all = [&vec![0.0; self.table.oscillator], values].concat();
-        let at = |losing| friction(self.table, &all, 0.1 * self.shown.top, losing);
-        at(false) == at(true)
+    /// At all these values the friction is the same while the speed grows and while it falls, and at some of them each
+    /// parameter acts on it: none is of the acceleration, of a dead zone or of an internal state.
+    fn is_told<'v>(&self, mut all: impl Iterator<Item = &'v [f64]> + Clone) -> bool {
+        let is_even = |values: &[f64]| {
+            let all = [&vec![0.0; self.table.oscillator], values].concat();
+            let at = |losing| friction(self.table, &all, 0.1 * self.shown.top, losing);
+            at(false) == at(true)
+        };
+        let acts = |values: &[f64], place: usize| {
+            let mut changed = values.to_vec();
+            changed[place] = self.parameters[place].bounds().clamp(1.5 * changed[place]);
+            self.levels(&changed) != self.levels(values)
+        };
+        let is_free =
+            |values: &[f64], place: usize| !self.parameters[place].bounds().is_fixed() && values[place] != 0.0;
+        all.clone().all(is_even)
+            && all.any(|values| {
+                (0..values.len()).filter(|place| is_free(values, *place)).all(|place| acts(values, place))
+            })
     }
 }
 

@@ -18,7 +18,7 @@ use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::tangent::Tangent;
 use crate::quantities::table::Place;
-use crate::residuals::rules::{SIGNIFICANT, SIGNIFICANT_FALL};
+use crate::residuals::rules::{SIGNIFICANT, SIGNIFICANT_FALL, SIGNIFICANT_PRESLIDING};
 use crate::warning::Warning;
 
 /// An extension of Coulomb and viscous friction on a linear spring.
@@ -75,6 +75,7 @@ impl ScoreTest {
     pub fn is_significant(&self) -> bool {
         match self.extension {
             Extension::FallsWithSpeed(_) if self.size > 0.0 => self.significance() > SIGNIFICANT_FALL,
+            Extension::Presliding if self.size > 0.0 => self.significance() > SIGNIFICANT_PRESLIDING,
             _ => self.significance().abs() > SIGNIFICANT,
         }
     }

@@ -51,11 +51,12 @@ impl Problem<'_> {
     }
 
     /// The same problem with laws that bend at no less than 1e-4 of the largest speed, and contacts on which the
-    /// machine would vibrate at no more than 300 times its own frequency: beyond, a law is to the records as good as
-    /// one that leaps, and its motion takes far longer to simulate.
+    /// machine would vibrate at no more than 300 times its own frequency, and with exponents of no less than 0.02:
+    /// beyond, a law is to the records as good as one that leaps, and its motion takes far longer to simulate.
     pub(crate) fn bending_in_sight(mut self) -> Self {
         const SLOWEST: f64 = 1e-4;
         const STIFFEST: f64 = 1e5;
+        const LEAST_EXPONENT: f64 = 0.02;
         let slowest = SLOWEST * reference(&self.experiments).scales().1;
         let stiffest = STIFFEST * (2.0 * PI * reference(&self.experiments).guess.frequency()).powi(2);
         let is_per_mass = self.table.is_per_mass();
@@ -67,6 +68,9 @@ impl Problem<'_> {
             let bounds = match powers.of_speed().filter(|_| law.role() == Role::Shape) {
                 Some(power) if power > 0.0 => Bounds::new(bounds.lower().max(value), bounds.upper()),
                 Some(_) => Bounds::new(bounds.lower(), bounds.upper().min(value)),
+                None if law.parameter().name() == "exponent" => {
+                    Bounds::new(bounds.lower().max(LEAST_EXPONENT), bounds.upper())
+                }
                 None => match powers.at_stiffness(stiffest).filter(|_| law.role() == Role::Level && is_per_mass) {
                     Some(value) => Bounds::new(bounds.lower(), bounds.upper().min(value)),
                     None => continue,

@@ -67,6 +67,9 @@ pub(crate) const LEAST_FLOOR: f64 = 1e-4;
 /// questions to a clean record one in about a hundred records answers one by chance.
 pub(crate) const SIGNIFICANT: f64 = 3.0;
 
+/// The same of presliding, which has an expected sign (1). Origin: one in 370 on one side.
+pub(crate) const SIGNIFICANT_PRESLIDING: f64 = 2.78;
+
 /// The same of what friction is expected to do: to fall with the speed, or to look like a negative damping (1). Origin:
 /// one in a hundred on one side; what falls and is not seen moves a level by several of its uncertainties.
 pub(crate) const SIGNIFICANT_FALL: f64 = 2.33;
