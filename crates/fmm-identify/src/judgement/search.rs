@@ -18,8 +18,8 @@ use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::inquiry::{Inquiry, is_past};
 use crate::judgement::rules::{
-    ALLOWED, ASKED_CHANGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING,
-    STEPS_OF_PRESLIDING,
+    ALLOWED, ASKED_CHANGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_OF_CHANGE,
+    MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
 use crate::judgement::trials::{CORNERS, SPRINGS, Trial, beside};
@@ -381,7 +381,7 @@ impl Run<'_, '_> {
     fn fit_change(&self, found: &mut Found, base: &Identification) -> Result<Option<Identification>, IdentifyError> {
         let Some(candidate) = with_change(&Candidate::fitted(base)) else { return Ok(None) };
         let begin = Begin::Extended(&base.fitted);
-        let most = MOST_ITERATIONS.min(self.options.max_iterations());
+        let most = MOST_ITERATIONS_OF_CHANGE.min(self.options.max_iterations());
         let options = self.options.clone().with_max_iterations(most);
         let is_curved = candidate.terms.has(Term::CurvedChange);
         let end = self.end.filter(|_| is_curved);
