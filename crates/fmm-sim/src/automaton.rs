@@ -253,18 +253,13 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     let load = self.load(&piece, time, state.position, state.velocity).now().value();
                     (EventKind::Breakaway, next, load)
                 }
-                Ending::RelativeRest => {
-                    state.velocity = self.belt;
-                    let (next, load) = self.mode(&piece, time, state);
-                    (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
-                }
                 // A speed of zero is not constant: such a branch ends like one that reaches rest.
-                Ending::SteadySpeed if self.has_no_speed(mode, state) => {
+                ending if ending == Ending::RelativeRest || self.has_no_speed(mode, state) => {
                     state.velocity = self.belt;
                     let (next, load) = self.mode(&piece, time, state);
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
                 }
-                Ending::SteadySpeed => {
+                _ => {
                     let next = if matches!(mode, Mode::Steady(_)) {
                         next
                     } else {
@@ -478,6 +473,30 @@ fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
     curve.frequencies().map(f64::recip).fold(f64::MAX, f64::min)
+}
+
+/// The first of some `guards` that falls to zero between `start` and `limit`, with its time and whether it is only
+/// grazed. Each has its curve, counted from `start`, and plain numbers of that; of two at one time the first counts.
+pub(crate) fn first_crossing<'a, G, D: Scalar>(
+    guards: impl IntoIterator<Item = (G, Curve<'a, D>, Curve<'a, f64>)>,
+    start: D,
+    limit: f64,
+    budget: &mut usize,
+) -> Result<Option<(G, D, bool)>, SimulationError> {
+    let begin = start.value();
+    let mut found: Option<(f64, G, Curve<D>)> = None;
+    for (guard, curve, plain) in guards {
+        let span = found.as_ref().map_or(limit - begin, |(elapsed, ..)| *elapsed);
+        if let Some(elapsed) = first_zero(&plain, span, budget)?
+            && found.as_ref().is_none_or(|(earlier, ..)| elapsed < *earlier)
+        {
+            found = Some((elapsed, guard, curve));
+        }
+    }
+    Ok(found.map(|(elapsed, guard, curve)| {
+        let (time, grazing) = crossing(&curve, start, begin + elapsed);
+        (guard, time, grazing)
+    }))
 }
 
 /// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only

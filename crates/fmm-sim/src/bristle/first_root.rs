@@ -1,6 +1,7 @@
 //! The first zero of a polynomial on a step, found without ever stepping over one.
 
 use crate::bristle::radau::STAGES;
+use crate::dormand_prince::halves;
 
 /// Number of halvings after which an interval counts as a point; Newton's method on the motion continues from there.
 const DEPTH: u32 = 44;
@@ -107,18 +108,6 @@ fn at<const N: usize>(coefficients: &[f64; N], tau: f64) -> f64 {
         }
     }
     row[0]
-}
-
-/// The coefficients on both halves of the interval.
-fn halves<const N: usize>(mut right: [f64; N]) -> ([f64; N], [f64; N]) {
-    let mut left = right;
-    for (level, left) in left.iter_mut().enumerate().skip(1) {
-        for index in 0..N - level {
-            right[index] = 0.5 * (right[index] + right[index + 1]);
-        }
-        *left = right[0];
-    }
-    (left, right)
 }
 
 /// The magnitude of the greater of the Legendre coefficients of degrees s − 1 and s, relative to the greatest Bernstein

@@ -43,6 +43,14 @@ fn ahead<D: Scalar, const N: usize>(
     }
 }
 
+/// Evaluates stages one after the other, each with its weights.
+macro_rules! stages {
+    (($begin:ident, $length:ident, $rates:ident, $state:ident, $rate:ident) $($stage:literal: $weights:ident),+) => {$(
+        ahead(&$weights, $begin, $rates, $length, $state);
+        $rate(NODES[$stage] * $length, $state, $stage, $rates);
+    )+};
+}
+
 /// Steps from `begin`, whose rates stand in `rates`, over `length` (s).
 ///
 /// `rate` writes the rates at a time, counted from the beginning, and a state into the stage of this index. Afterwards
@@ -56,14 +64,8 @@ pub(crate) fn step<D: Scalar>(
     end: &mut [D],
     mut rate: impl FnMut(f64, &[D], usize, &mut [Rates<D>]),
 ) {
-    macro_rules! stages {
-        ($($stage:literal: $weights:ident),+) => {$(
-            ahead(&$weights, begin, rates, length, state);
-            rate(NODES[$stage] * length, state, $stage, rates);
-        )+};
-    }
-    stages!(1: STAGE_1, 2: STAGE_2, 3: STAGE_3, 4: STAGE_4, 5: STAGE_5, 6: STAGE_6);
-    stages!(7: STAGE_7, 8: STAGE_8, 9: STAGE_9, 10: STAGE_10, 11: STAGE_11);
+    stages!((begin, length, rates, state, rate) 1: STAGE_1, 2: STAGE_2, 3: STAGE_3, 4: STAGE_4, 5: STAGE_5, 6: STAGE_6);
+    stages!((begin, length, rates, state, rate) 7: STAGE_7, 8: STAGE_8, 9: STAGE_9, 10: STAGE_10, 11: STAGE_11);
     ahead(&STEP, begin, rates, length, end);
     rate(length, end, END, rates);
 }
@@ -77,13 +79,7 @@ pub(crate) fn dense_stages<D: Scalar>(
     state: &mut [D],
     mut rate: impl FnMut(f64, &[D], usize, &mut [Rates<D>]),
 ) {
-    macro_rules! stages {
-        ($($stage:literal: $weights:ident),+) => {$(
-            ahead(&$weights, begin, rates, length, state);
-            rate(NODES[$stage] * length, state, $stage, rates);
-        )+};
-    }
-    stages!(13: STAGE_13, 14: STAGE_14, 15: STAGE_15);
+    stages!((begin, length, rates, state, rate) 13: STAGE_13, 14: STAGE_14, 15: STAGE_15);
 }
 
 /// The terms F₀ to F₆ of the interpolant y + θ (F₀ + (1−θ) (F₁ + θ (F₂ + (1−θ) (F₃ + …)))) of an unknown that grows by
@@ -130,41 +126,35 @@ pub(crate) const COEFFICIENTS: usize = 8;
 /// x and v as polynomials in the part θ ∈ [0, 1] of a step: y + θ (F₀ + (1−θ) (F₁ + θ (F₂ + (1−θ) (F₃ + …)))).
 #[derive(Clone, Copy)]
 pub(crate) struct Within<D> {
-    begin: State<D>,
+    pub(crate) begin: [D; 2],
     /// F₀ to F₆.
-    nested: [State<D>; 7],
+    pub(crate) nested: [[D; 7]; 2],
 }
 
 impl<D: Scalar> Within<D> {
-    /// The polynomials from `begin` on with the terms `nested`.
-    pub(crate) const fn new(begin: State<D>, nested: [State<D>; 7]) -> Self {
-        Self { begin, nested }
-    }
-
     /// Σ cᵢ θⁱ for the position.
     pub(crate) fn position(&self) -> [D; COEFFICIENTS] {
-        expand(self.begin.position, self.nested.map(|term| term.position))
+        expand(self.begin[0], self.nested[0])
     }
 
     /// Σ cᵢ θⁱ for the velocity.
     pub(crate) fn velocity(&self) -> [D; COEFFICIENTS] {
-        expand(self.begin.velocity, self.nested.map(|term| term.velocity))
+        expand(self.begin[1], self.nested[1])
     }
 
     /// The state at the part `theta` of the step.
     pub(crate) fn at(&self, theta: f64) -> State<D> {
-        let zero = State { position: D::from(0.0), velocity: D::from(0.0) };
-        let sum = (0..self.nested.len()).rev().fold(zero, |sum, index| {
-            // Times θ for even, times 1 − θ for odd terms.
-            let weight = if index % 2 == 0 { theta } else { 1.0 - theta };
-            let term = self.nested[index];
-            State {
-                position: (sum.position + term.position) * weight,
-                velocity: (sum.velocity + term.velocity) * weight,
-            }
-        });
-        State { position: self.begin.position + sum.position, velocity: self.begin.velocity + sum.velocity }
+        let [position, velocity] =
+            [0, 1].map(|unknown| interpolated(self.begin[unknown], &self.nested[unknown], theta));
+        State { position, velocity }
     }
+}
+
+/// y + θ (F₀ + (1−θ) (F₁ + θ (F₂ + (1−θ) (F₃ + …)))) for `begin` y, `nested` F₀ to F₆ and `theta` θ.
+pub(crate) fn interpolated<D: Scalar>(begin: D, nested: &[D; 7], theta: f64) -> D {
+    // Times θ for even, times 1 − θ for odd terms.
+    let weigh = |sum: D, (index, term): (usize, &D)| (sum + *term) * if index % 2 == 0 { theta } else { 1.0 - theta };
+    begin + nested.iter().enumerate().rev().fold(D::from(0.0), weigh)
 }
 
 /// Powers of θ out of y + θ (F₀ + (1−θ) (F₁ + θ (F₂ + (1−θ) (F₃ + …)))).
@@ -181,6 +171,18 @@ fn expand<D: Scalar>(start: D, nested: [D; 7]) -> [D; COEFFICIENTS] {
     }
     powers[0] += start;
     powers
+}
+
+/// Bernstein coefficients of a polynomial on the two halves of its interval (de Casteljau).
+pub(crate) fn halves<const N: usize>(mut right: [f64; N]) -> ([f64; N], [f64; N]) {
+    let mut left = right;
+    for (level, left) in left.iter_mut().enumerate().skip(1) {
+        for index in 0..N - level {
+            right[index] = 0.5 * (right[index] + right[index + 1]);
+        }
+        *left = right[0];
+    }
+    (left, right)
 }
 
 /// The Bernstein coefficients on [0, 1] of Σ cᵢ τⁱ.

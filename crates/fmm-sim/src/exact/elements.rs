@@ -4,10 +4,10 @@
 use fmm_friction::{Element, PiecewiseLinearLaw, Regime};
 use fmm_model::Scalar;
 
-use crate::automaton::crossing;
+use crate::automaton::first_crossing;
 use crate::error::SimulationError;
 use crate::exact::closed_form::{Cancellation, respond};
-use crate::mechanics::{Curve, Decay, Forcing, Piece, ROUNDING, SEARCH_BUDGET, Wave, first_zero};
+use crate::mechanics::{Curve, Decay, Forcing, Piece, ROUNDING, SEARCH_BUDGET, Wave};
 use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
 use crate::trajectory::{Power, Recorder};
 
@@ -113,8 +113,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
     }
 
     fn friction(&self) -> D {
-        let sum = |sum, (element, deflection): (&Element<D>, &D)| sum + element.stiffness * *deflection;
-        self.elements.iter().zip(&self.deflections).fold(D::from(0.0), sum) * self.scenario.normal_load()
+        self.friction_at(&self.deflections)
     }
 
     /// Decides the direction of the motion from here; at zero relative velocity all elements hold again.
@@ -214,7 +213,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         let velocity = path.derivative();
 
         let begin = self.time.value();
-        let mut found: Option<(Guard, f64, Curve<D>)> = None;
+        let mut found = None;
         if !self.at_rest {
             let mut guards = vec![(Guard::RelativeRest, velocity.scaled(D::from(sign), self.belt * -sign))];
             for (index, (element, deflection)) in self.elements.iter().zip(&self.deflections).enumerate() {
@@ -227,26 +226,19 @@ impl<'a, D: Scalar> Yielding<'a, D> {
                     guards.push((Guard::Yield(index), reserve));
                 }
             }
-            for (guard, curve) in guards {
-                let span = found.as_ref().map_or(limit - begin, |(_, elapsed, _)| *elapsed);
+            let noise = self.noise;
+            let guards = guards.into_iter().map(|(guard, curve)| {
                 let plain_curve = curve.plain(&plain);
-                let plain_curve = match (guard, self.noise) {
+                let plain_curve = match (guard, noise) {
                     (Guard::RelativeRest, Some(noise)) => plain_curve.risen_from_zero(noise),
                     _ => plain_curve,
                 };
-                if let Some(elapsed) = first_zero(&plain_curve, span, &mut self.budget)? {
-                    // Of two guards at one time the first in the list stays.
-                    if found.as_ref().is_none_or(|(_, earlier, _)| elapsed < *earlier) {
-                        found = Some((guard, elapsed, curve));
-                    }
-                }
-            }
+                (guard, curve, plain_curve)
+            });
+            found = first_crossing(guards, self.time, limit, &mut self.budget)?;
         }
         let (time, event) = match found {
-            Some((guard, elapsed, curve)) => {
-                let (time, grazing) = crossing(&curve, self.time, begin + elapsed);
-                (time, Some((guard, grazing)))
-            }
+            Some((guard, time, grazing)) => (time, Some((guard, grazing))),
             None => (D::from(limit), None),
         };
         let stop = if event.is_none() && last { f64::INFINITY } else { time.value() };
@@ -257,6 +249,12 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         self.deflections = moved;
         (self.time, self.state, self.noise) = (time, next, None);
         Ok(event)
+    }
+
+    /// Friction (N) of elements with these `deflections` (m).
+    fn friction_at(&self, deflections: &[D]) -> D {
+        let sum = |sum, (element, deflection): (&Element<D>, &D)| sum + element.stiffness * *deflection;
+        self.elements.iter().zip(deflections).fold(D::from(0.0), sum) * self.scenario.normal_load()
     }
 
     /// The deflections at `position` and `time` within the present regime.
@@ -293,9 +291,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         let oscillator = self.scenario.oscillator();
         recorder.work(self.time.value(), end, 1.0 / frequency, |time| {
             let State { position, velocity } = path.state(-self.time + time);
-            let sum = |sum, (element, deflection): (&Element<D>, D)| sum + element.stiffness * deflection;
-            let deflections = self.moved(position, D::from(time));
-            let friction = self.elements.iter().zip(deflections).fold(D::from(0.0), sum) * self.scenario.normal_load();
+            let friction = self.friction_at(&self.moved(position, D::from(time)));
             Power::of(friction, oscillator.damping().force(velocity), piece.force(time), velocity, self.belt)
         })
     }

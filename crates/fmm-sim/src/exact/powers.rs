@@ -132,35 +132,24 @@ impl Powers {
     ) {
         widest(
             #[inline(always)]
-            || self.write_wave_here(samples, range.clone(), wave, offset, cosine, sine),
+            || {
+                let (c, s, o) = (cosine.value(), sine.value(), offset.value());
+                self.fill_with(&mut samples.values_mut()[range.clone()], |re, im, _| o + (c * re + s * im));
+                for direction in 0..D::DIRECTIONS {
+                    let (rate, angular) = (wave.rate.partial(direction), wave.angular.partial(direction));
+                    let (c0, s0, o0) = (cosine.partial(direction), sine.partial(direction), offset.partial(direction));
+                    let out = &mut samples.partial_mut(direction)[range.clone()];
+                    if rate == 0.0 && angular == 0.0 {
+                        self.fill_with(out, |re, im, _| o0 + (c0 * re + s0 * im));
+                    } else {
+                        // ∂/∂a and ∂/∂ω of the wave, per interval: τ times the wave itself turned and scaled.
+                        let (c1, s1) =
+                            ((angular * s - rate * c) * wave.interval, -(rate * s + angular * c) * wave.interval);
+                        self.fill_with(out, |re, im, j| o0 + ((c0 + c1 * j) * re + (s0 + s1 * j) * im));
+                    }
+                }
+            },
         );
-    }
-
-    #[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
-    #[inline(always)]
-    fn write_wave_here<D: Scalar>(
-        &self,
-        samples: &mut Samples<D>,
-        range: std::ops::Range<usize>,
-        wave: &Wave<D>,
-        offset: D,
-        cosine: D,
-        sine: D,
-    ) {
-        let (c, s, o) = (cosine.value(), sine.value(), offset.value());
-        self.fill_with(&mut samples.values_mut()[range.clone()], |re, im, _| o + (c * re + s * im));
-        for direction in 0..D::DIRECTIONS {
-            let (rate, angular) = (wave.rate.partial(direction), wave.angular.partial(direction));
-            let (c0, s0, o0) = (cosine.partial(direction), sine.partial(direction), offset.partial(direction));
-            let out = &mut samples.partial_mut(direction)[range.clone()];
-            if rate == 0.0 && angular == 0.0 {
-                self.fill_with(out, |re, im, _| o0 + (c0 * re + s0 * im));
-            } else {
-                // ∂/∂a and ∂/∂ω of the wave, per interval: τ times the wave itself turned and scaled.
-                let (c1, s1) = ((angular * s - rate * c) * wave.interval, -(rate * s + angular * c) * wave.interval);
-                self.fill_with(out, |re, im, j| o0 + ((c0 + c1 * j) * re + (s0 + s1 * j) * im));
-            }
-        }
     }
 
     /// Fills `out`, which is not longer than the table, with the result of `of` for each power, real and imaginary

@@ -3,11 +3,11 @@
 use fmm_friction::Affine;
 use fmm_model::{Oscillator, Scalar};
 
-use crate::automaton::{Branch, Ended, Ending, Phase, Slide, crossing};
+use crate::automaton::{Branch, Ended, Ending, Phase, Slide, crossing, first_crossing};
 use crate::error::SimulationError;
 use crate::exact::closed_form::{Cancellation, respond};
 use crate::exact::powers::Powers;
-use crate::mechanics::{Branches, Curve, Decay, Forcing, SEARCH_BUDGET, first_zero, load, rounding};
+use crate::mechanics::{Branches, Curve, Decay, Forcing, SEARCH_BUDGET, load, rounding};
 use crate::scenario::{Sampling, Scenario, State};
 use crate::trajectory::{Power, Recorder};
 
@@ -195,7 +195,6 @@ impl<'a, D: Scalar> Swing<'a, D> {
     ) -> Result<Option<(Ending, D, bool)>, SimulationError> {
         let sign = phase.direction.sign();
         let velocity = position.derivative();
-        let begin = phase.time.value();
         // A motion from rest relative to the counterface, or on a branch that begins at the end of another, starts from
         // zero exactly; the automaton has decided its direction.
         let from_rest = phase.state.velocity.value() == self.belt.value();
@@ -206,25 +205,18 @@ impl<'a, D: Scalar> Swing<'a, D> {
         let guards = match phase.branch {
             Branch::Only => vec![speed()],
             Branch::Gaining => vec![gain(sign)],
-            Branch::Losing => vec![speed(), gain(-sign)],
+            Branch::Losing => vec![gain(-sign), speed()],
         };
-        let mut found: Option<(Ending, f64, Curve<D>)> = None;
-        for (ending, guard) in guards {
-            let span = found.as_ref().map_or(phase.limit - begin, |(_, elapsed, _)| *elapsed);
+        let guards = guards.into_iter().map(|(ending, guard)| {
             let mut plain_guard = guard.plain(plain);
             if ending == Ending::RelativeRest && from_rest {
                 plain_guard = plain_guard.risen_from_zero(noise);
             } else if ending == Ending::SteadySpeed && plain_guard.now().abs() <= noise {
                 plain_guard = plain_guard.risen_from_zero(noise * plain.fastest());
             }
-            if let Some(elapsed) = first_zero(&plain_guard, span, &mut self.budget)? {
-                found = Some((ending, elapsed, guard));
-            }
-        }
-        Ok(found.map(|(ending, elapsed, guard)| {
-            let (time, grazing) = crossing(&guard, phase.time, begin + elapsed);
-            (ending, time, grazing)
-        }))
+            (ending, guard, plain_guard)
+        });
+        first_crossing(guards, phase.time, phase.limit, &mut self.budget)
     }
 }
 

@@ -11,15 +11,22 @@ use crate::scenario::{Event, EventKind, Mode, State};
 pub use moreau::Moreau;
 pub use thesis::Thesis;
 
-/// Events at multiples of a step.
-struct GridEvents {
+/// The grid of a method of fixed step: its events, and the force at times that ascend.
+struct Grid<'a> {
     /// Δt (s).
     step: f64,
     /// N μ_s (N).
     static_level: f64,
+    drive: &'a Forcing<'a, f64>,
+    piece: Piece<f64>,
+    index: usize,
 }
 
-impl GridEvents {
+impl<'a> Grid<'a> {
+    fn new(step: f64, static_level: f64, drive: &'a Forcing<'a, f64>) -> Self {
+        Self { step, static_level, drive, piece: drive.piece(0), index: 0 }
+    }
+
     /// An event at step `index` in `state` (m, m/s), the force beside friction being `balance` (N).
     fn event(&self, kind: EventKind, index: usize, state: (f64, f64), next: Mode, balance: f64) -> Event {
         Event {
@@ -33,27 +40,17 @@ impl GridEvents {
             grazing: false,
         }
     }
-}
 
-/// The force at times that ascend.
-struct PieceAt<'a> {
-    drive: &'a Forcing<'a, f64>,
-    piece: Piece<f64>,
-    index: usize,
-}
-
-impl<'a> PieceAt<'a> {
-    fn new(drive: &'a Forcing<'a, f64>) -> Self {
-        Self { drive, piece: drive.piece(0), index: 0 }
-    }
-
-    /// True if a contact of `oscillator` that holds in `state` at `time` with this `breakaway` coefficient holds for
-    /// good.
-    fn holds_for_good(&self, oscillator: &Oscillator, time: f64, state: State, breakaway: f64) -> bool {
+    /// True if a contact of `oscillator` that holds in `state` (m, m/s) at `time` with this `breakaway` coefficient
+    /// holds for good.
+    fn holds_for_good(&self, oscillator: &Oscillator, time: f64, state: (f64, f64), breakaway: f64) -> bool {
+        let state = State { position: state.0, velocity: state.1 };
         holds_for_good(oscillator, self.drive, self.index, time, state, breakaway)
     }
 
-    fn force(&mut self, time: f64) -> f64 {
+    /// The force (N) at step `index`.
+    fn force(&mut self, index: usize) -> f64 {
+        let time = index as f64 * self.step;
         while time >= self.piece.end {
             self.index += 1;
             self.piece = self.drive.piece(self.index);

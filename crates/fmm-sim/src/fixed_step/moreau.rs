@@ -4,9 +4,9 @@ use fmm_friction::SlidingLaw;
 use fmm_model::Rounded;
 
 use crate::error::{NOT_UNIFORM, SimulationError};
-use crate::fixed_step::{GridEvents, PieceAt};
+use crate::fixed_step::Grid;
 use crate::mechanics::Forcing;
-use crate::scenario::{Direction, Event, EventKind, Mode, Sampling, Scenario, State};
+use crate::scenario::{Direction, Event, EventKind, Mode, Sampling, Scenario};
 use crate::trajectory::{Engine, Trajectory};
 
 /// The Moreau-Jean θ-method: friction is an impulse in each step, as large as its level allows and as small as it must
@@ -71,7 +71,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
         scenario.require_constant_load("moreau")?;
         trajectory.reset("moreau", 0, false, sampling)?;
         let drive = Forcing::of(scenario);
-        let (belt, mut pieces) = (drive.belt(), PieceAt::new(&drive));
+        let belt = drive.belt();
         let (mass, stiffness) = (oscillator.mass(), oscillator.stiffness());
         let linear = oscillator.damping().linear_coefficient();
         let theta = self.theta;
@@ -82,8 +82,8 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
         }
 
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
-        let grid = GridEvents { step: h, static_level };
-        let mut force = pieces.force(0.0);
+        let mut grid = Grid::new(h, static_level, &drive);
+        let mut force = grid.force(0);
         let balance = force - oscillator.restoring_force(x) - oscillator.damping().force(belt);
         let mut mode = if v != belt {
             Mode::Slip(Direction::of(v - belt))
@@ -111,7 +111,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
                     break;
                 }
             }
-            let next_force = pieces.force((index + 1) as f64 * h);
+            let next_force = grid.force(index + 1);
             let driving = theta * next_force + (1.0 - theta) * force;
             force = next_force;
             // The linear machine implicitly, other forces at the present state.
@@ -155,9 +155,8 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
         if let Some(stop) = stopped {
             trajectory.events.push(stop);
         }
-        let state = State { position: x, velocity: v };
-        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, law.breakaway());
-        trajectory.rests = rests;
+        let end = sampling.end();
+        trajectory.rests = mode == Mode::Stick && grid.holds_for_good(oscillator, end, (x, v), law.breakaway());
         Ok(())
     }
 }

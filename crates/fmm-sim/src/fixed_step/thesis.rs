@@ -3,9 +3,9 @@
 use fmm_friction::SlidingLaw;
 
 use crate::error::{NOT_UNIFORM, SimulationError};
-use crate::fixed_step::{GridEvents, PieceAt};
+use crate::fixed_step::Grid;
 use crate::mechanics::Forcing;
-use crate::scenario::{Direction, EventKind, Mode, Sampling, Scenario, State};
+use crate::scenario::{Direction, EventKind, Mode, Sampling, Scenario};
 use crate::trajectory::{Engine, Trajectory};
 
 /// Semi-implicit Euler with the branch order of the thesis' appendix (A3 to A6), for reproduction only.
@@ -81,11 +81,10 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
             StaticLevel::AtSpeed => balance.abs() < law.coefficient(v.abs()) * load,
         };
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
-        let grid = GridEvents { step, static_level };
-        let mut pieces = PieceAt::new(&drive);
+        let mut grid = Grid::new(step, static_level, &drive);
         // The appendix starts every run as if the motion before had been in the positive direction.
         let (mut before, mut acceleration) = (1.0, 0.0);
-        let balance = pieces.force(0.0) - oscillator.restoring_force(x);
+        let balance = grid.force(0) - oscillator.restoring_force(x);
         let mut mode = if v == 0.0 && holds(x, v, balance) {
             Mode::Stick
         } else {
@@ -101,7 +100,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
             }
             let sliding = v * before > 0.0;
             before = v;
-            let balance = pieces.force(index as f64 * step) - oscillator.restoring_force(x);
+            let balance = grid.force(index) - oscillator.restoring_force(x);
             if !sliding && holds(x, v, balance) {
                 v = 0.0;
                 acceleration = 0.0;
@@ -146,9 +145,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Thesis {
             StaticLevel::Breakaway => law.breakaway(),
             StaticLevel::AtSpeed => law.coefficient(0.0),
         };
-        let state = State { position: x, velocity: v };
-        let rests = mode == Mode::Stick && pieces.holds_for_good(oscillator, sampling.end(), state, breakaway);
-        trajectory.rests = rests;
+        trajectory.rests = mode == Mode::Stick && grid.holds_for_good(oscillator, sampling.end(), (x, v), breakaway);
         Ok(())
     }
 }

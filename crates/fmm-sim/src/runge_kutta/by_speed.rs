@@ -4,7 +4,7 @@ use fmm_friction::SlidingLaw;
 use fmm_model::Scalar;
 
 use crate::automaton::Phase;
-use crate::dormand_prince::{Rates, dense_stages, errors, mean_rate, nested, step};
+use crate::dormand_prince::{Rates, dense_stages, errors, interpolated, mean_rate, nested, step};
 use crate::runge_kutta::field::{Field, Progress};
 use crate::runge_kutta::step::Step;
 use crate::scenario::State;
@@ -108,13 +108,7 @@ impl<D: Scalar> BySpeed<D> {
         let [time, position] = if part == 1.0 {
             self.end
         } else {
-            [0, 1].map(|unknown| {
-                let terms = self.nested[unknown].iter().enumerate().rev();
-                // Times θ for even, times 1 − θ for odd terms.
-                let weigh =
-                    |sum: D, (index, term): (usize, &D)| (sum + *term) * if index % 2 == 0 { part } else { 1.0 - part };
-                self.start[unknown] + terms.fold(D::from(0.0), weigh)
-            })
+            [0, 1].map(|unknown| interpolated(self.start[unknown], &self.nested[unknown], part))
         };
         // From that speed to the given time.
         let late = -(time - time.value());

@@ -2,7 +2,9 @@
 
 use fmm_model::Scalar;
 
-use crate::dormand_prince::{COEFFICIENTS, END, Rates, Within, bernstein, dense_stages, error, errors, nested, step};
+use crate::dormand_prince::{
+    COEFFICIENTS, END, Rates, Within, bernstein, dense_stages, error, errors, halves, nested, step,
+};
 use crate::scenario::State;
 
 /// Differences of a step from the embedded formulas of orders 5 and 3, for position and velocity.
@@ -100,10 +102,9 @@ impl<D: Scalar> Step<D> {
         let start = [self.begin.position, self.begin.velocity];
         let mut state = start;
         dense_stages(&start, self.length, &mut self.rates, &mut state, rate_of(accelerate));
-        let position = nested(&self.rates[0], self.end.position - self.begin.position, self.length);
-        let velocity = nested(&self.rates[1], self.end.velocity - self.begin.velocity, self.length);
-        let term = |index: usize| State { position: position[index], velocity: velocity[index] };
-        Within::new(self.begin, std::array::from_fn(term))
+        let end = [self.end.position, self.end.velocity];
+        let nested = [0, 1].map(|i| nested(&self.rates[i], end[i] - start[i], self.length));
+        Within { begin: start, nested }
     }
 }
 
@@ -152,14 +153,7 @@ fn search(bernstein: [f64; COEFFICIENTS], from: f64, to: f64, depth: u32) -> Opt
     if depth == DEPTH {
         return Some(to);
     }
-    let (mut left, mut right, mut row) = (bernstein, bernstein, bernstein);
-    for i in 1..COEFFICIENTS {
-        for j in 0..COEFFICIENTS - i {
-            row[j] = 0.5 * (row[j] + row[j + 1]);
-        }
-        left[i] = row[0];
-        right[COEFFICIENTS - 1 - i] = row[COEFFICIENTS - 1 - i];
-    }
+    let (left, right) = halves(bernstein);
     let middle = 0.5 * (from + to);
     search(left, from, middle, depth + 1)
         .or_else(|| if left[COEFFICIENTS - 1] <= 0.0 { Some(middle) } else { search(right, middle, to, depth + 1) })
