@@ -176,35 +176,31 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
     };
     let amplitude = label("amplitude", backbone.unit());
     let measured = record.times().zip(record.values().iter().copied());
-    let band = |of: fn(&BackbonePoint) -> Estimated, role: Role, panel: Panel| {
+    let with_band = |axis: String, name: &str, of: fn(&BackbonePoint) -> Estimated| {
+        let name = format!("{name}, lines at two standard uncertainties");
+        let panel = Panel::new(amplitude.clone(), axis, 300.0);
+        let panel = panel.with(Role::Points, name, against(&|point| of(point).value));
         [-1.0, 1.0].into_iter().fold(panel, |panel, sign| {
-            let edge = move |point: &BackbonePoint| of(point).value + sign * 2.0 * of(point).uncertainty;
-            panel.with(role, "", against(&edge))
+            let edge = |point: &BackbonePoint| of(point).value + sign * 2.0 * of(point).uncertainty;
+            panel.with(Role::Measured, "", against(&edge))
         })
     };
-    let frequency = Panel::new(amplitude.clone(), "f / Hz", 300.0).with(
-        Role::Points,
-        "frequency, lines at two standard uncertainties",
-        against(&|point| point.frequency.value),
-    );
-    let damping = Panel::new(amplitude, label("c/m", "1/s"), 300.0).with(
-        Role::Points,
-        "equivalent damping, lines at two standard uncertainties",
-        against(&|point| point.damping.value),
-    );
-    let damping = band(|point| point.damping, Role::Measured, damping);
     let mut panels = vec![
         Panel::new("frequency / Hz", "level / dB", 300.0).with(Role::Residual, "spectrum", lines),
         Panel::new("time / s", label("record", record.unit()), 300.0)
             .with(Role::Measured, "measured", measured)
             .with(Role::Fitted, "envelope of the mode", envelope(1.0))
             .with(Role::Fitted, "", envelope(-1.0)),
-        band(|point| point.frequency, Role::Measured, frequency).with(
+        with_band("f / Hz".to_owned(), "frequency", |point| point.frequency).with(
             Role::Fitted,
             suggestion.model(),
             against(&sprung).into_iter().filter(|(_, f)| f.is_finite()),
         ),
-        damping.with(Role::Fitted, suggestion.model(), against(&said)),
+        with_band(label("c/m", "1/s"), "equivalent damping", |point| point.damping).with(
+            Role::Fitted,
+            suggestion.model(),
+            against(&said),
+        ),
     ];
     // One mode alone has nothing to interact with.
     let own: Vec<DecayMode> = decay_modes(record).into_iter().filter(|mode| mode.multiple.is_none()).collect();

@@ -6,7 +6,8 @@ use std::path::Path;
 use clap::Args;
 use fmm_record::{Channel, Column, Label, Quantity, Reader, Reading, Record};
 
-use crate::input::motion;
+use crate::files;
+use crate::input::{is_motion, motion};
 
 /// One blow.
 pub(crate) struct Trial {
@@ -54,9 +55,8 @@ impl Channels {
         let (force, response, quantity) = self.channels(&file.channels()?)?;
         let (force, response) = (file.channel(force)?, file.channel(response)?);
         let origin = format!("{} and {}; the sampling rate was {}", force.channel, response.channel, force.sampling);
-        let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
         Ok(Trial {
-            name,
+            name: files::name(path),
             origin,
             force: in_si(&force, Quantity::Force, self.force_scale, "--force-scale")?,
             response: in_si(&response, quantity, self.response_scale, "--response-scale")?,
@@ -100,17 +100,17 @@ impl Channels {
             })
         };
         let force = self.force.as_deref().map_or_else(|| found(Quantity::Force, None), given)?;
-        let is_motion = |offer: &&Channel| {
+        let moves = |offer: &&Channel| {
             key(offer) != force && is_series(offer) && told(offer).is_some_and(|told| told != Quantity::Force)
         };
-        let moves = || offers.iter().find(is_motion).map(key);
+        let moving = || offers.iter().find(moves).map(key);
         let silent = || {
             format!("no channel says what the response measured; give --quantity; there are, counted from 0: {}", all())
         };
         let response = match (self.response.as_deref(), self.quantity) {
             (Some(choice), _) => given(choice)?,
             (None, Some(quantity)) => found(quantity, Some(&force))?,
-            (None, None) => moves().ok_or_else(silent)?,
+            (None, None) => moving().ok_or_else(silent)?,
         };
         if force == response {
             let name = offers.iter().find(|offer| key(offer) == force).map(|offer| offer.label.name().to_owned());
@@ -118,16 +118,11 @@ impl Channels {
             return Err(format!("channel {name} cannot be both force and response").into());
         }
         let written =
-            || self.response.as_deref().and_then(|name| Label::of(name).quantity()).filter(|told| is_of_motion(*told));
+            || self.response.as_deref().and_then(|name| Label::of(name).quantity()).filter(|told| is_motion(*told));
         let offered = || offers.iter().find(|offer| key(offer) == response).and_then(told);
         let quantity = self.quantity.or_else(|| offered().or_else(written)).ok_or_else(silent)?;
         Ok((force, response, quantity))
     }
-}
-
-/// True for a quantity that a response can have.
-fn is_of_motion(quantity: Quantity) -> bool {
-    matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
 }
 
 /// Number of a channel, as names in Universal Files need not differ.
@@ -138,7 +133,7 @@ fn key(channel: &Channel) -> Column {
 /// The motion, or the force, that the file or the name of the channel says it measured.
 fn told(channel: &Channel) -> Option<Quantity> {
     let told = channel.label.stated_quantity().or_else(|| Label::of(channel.label.name()).quantity());
-    told.filter(|told| is_of_motion(*told) || *told == Quantity::Force)
+    told.filter(|told| is_motion(*told) || *told == Quantity::Force)
 }
 
 /// The record of a reading in SI units, by the `scale` that its `option` gave.

@@ -7,6 +7,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmm_record::{Column, DataFile, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit};
 
+use crate::files;
+
 /// The record to identify, and how it was read.
 pub(crate) struct Input {
     /// The record, in SI units unless those are not known.
@@ -60,6 +62,11 @@ pub(crate) struct Choice {
     /// True for the channel that drives the machine.
     #[arg(skip)]
     pub(crate) is_drive: bool,
+}
+
+/// True for a quantity to which a law can be fitted, or that a response can have.
+pub(crate) fn is_motion(quantity: Quantity) -> bool {
+    matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
 }
 
 /// Quantity of a motion by its name.
@@ -161,9 +168,7 @@ impl Choice {
         warnings: Vec<String>,
     ) -> Result<Input, Box<dyn Error>> {
         let meaning = self.request().meaning(label).map_err(|error| self.with_remedy(error))?;
-        let is_motion =
-            matches!(meaning.quantity, Quantity::Velocity | Quantity::Displacement | Quantity::Acceleration);
-        if !is_motion && !self.is_drive {
+        if !is_motion(meaning.quantity) && !self.is_drive {
             return Err(format!(
                 "channel \"{}\" is a record of {}, and friction is fitted to a velocity, a displacement or an acceleration: \
                  give one of these by --channel",
@@ -172,9 +177,8 @@ impl Choice {
             )
             .into());
         }
-        let name =
-            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
-        let origin = format!("{name}, channel {}: {meaning}; the sampling rate was {}", label.name(), reading.sampling);
+        let (file, channel) = (files::name(path), label.name());
+        let origin = format!("{file}, channel {channel}: {meaning}; the sampling rate was {}", reading.sampling);
         let record = reading.record.scaled(meaning.factor, meaning.unit)?.with_quantity(meaning.quantity);
         Ok(Input { record, origin, warnings })
     }
