@@ -20,7 +20,7 @@ fuzz_target!(|bytes: &[u8]| {
         let mut written = Vec::new();
         if write_to(&mut written, file.sets(), form).is_ok() {
             let again = UffFile::parse(&written).expect("a file written here is read");
-            let lengths = |file: &UffFile| file.sets().iter().map(|set| set.len()).collect::<Vec<_>>();
+            let lengths = |file: &UffFile| file.sets().iter().map(|set| set.ordinate().len()).collect::<Vec<_>>();
             assert_eq!(lengths(&again), lengths(&file));
         }
     }

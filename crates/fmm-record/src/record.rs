@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use fmm_model::Rounded;
+
 use crate::error::RecordError;
 use crate::numerics::mean;
 use crate::sampling::uniform_grid;
@@ -22,8 +24,7 @@ impl Span {
         let end = start + interval * (length - 1) as f64;
         let (from, to) = (self.from.unwrap_or(start), self.to.unwrap_or(end));
         let nothing = || {
-            let is_long = |time: f64| time != 0.0 && !(1e-5..1e16).contains(&time.abs());
-            let [from, to] = [from, to].map(|time| if is_long(time) { format!("{time:e}") } else { time.to_string() });
+            let [from, to] = [from, to].map(Rounded::every_digit);
             RecordError::options(format!(
                 "no sample lies between {from} s and {to} s; the record spans {start} s to {end} s"
             ))

@@ -79,7 +79,7 @@ fn not_uniform(index: usize, time: f64, expected: f64, interval: f64) -> RecordE
 }
 
 /// A number for the eye, in six significant digits or fewer.
-fn in_six_digits(number: f64) -> f64 {
+pub(crate) fn in_six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 

@@ -4,7 +4,7 @@ pub(crate) mod integral;
 pub(crate) mod savitzky_golay;
 
 use crate::calculus::integral::central_differences;
-use crate::calculus::savitzky_golay::{Functional, sliding};
+use crate::calculus::savitzky_golay::sliding;
 use crate::error::RecordError;
 use crate::numerics::Sum;
 
@@ -135,7 +135,7 @@ impl Smoothing {
             Self::None => Ok(values.to_vec()),
             Self::MovingAverage { span, .. } if span.is_multiple_of(2) => Err(even_span(span)),
             Self::MovingAverage { span, ends } => Ok(averaged(values, span / 2, ends)),
-            Self::SavitzkyGolay { span, degree } => sliding(values, span, degree, Functional::Value),
+            Self::SavitzkyGolay { span, degree } => sliding(values, span, degree, |p| &p.value),
         }
     }
 
@@ -146,7 +146,7 @@ impl Smoothing {
     /// Those of [`Smoothing::apply`], and [`RecordError::TooShort`] below three values.
     pub fn slope(&self, values: &[f64]) -> Result<Vec<f64>, RecordError> {
         match *self {
-            Self::SavitzkyGolay { span, degree } => sliding(values, span, degree, Functional::Slope),
+            Self::SavitzkyGolay { span, degree } => sliding(values, span, degree, |p| &p.slope),
             _ => central_differences(&self.apply(values)?),
         }
     }

@@ -6,20 +6,12 @@ use crate::error::RecordError;
 /// Highest degree: beyond it the polynomials follow noise, and their products lose the digits of a double.
 const HIGHEST_DEGREE: usize = 8;
 
-/// Number that a window takes from its polynomial.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Functional {
-    Value,
-    /// Per sample.
-    Slope,
-}
-
-/// A functional at each sample of the polynomials of `degree` that are fitted by least squares to `span` samples.
+/// The value or the slope at each sample of the polynomials of `degree` that are fitted by least squares to `span` samples.
 pub(super) fn sliding(
     values: &[f64],
     span: usize,
     degree: usize,
-    functional: Functional,
+    of: fn(&Polynomial) -> &[f64],
 ) -> Result<Vec<f64>, RecordError> {
     if span.is_multiple_of(2) {
         return Err(even_span(span));
@@ -35,10 +27,9 @@ pub(super) fn sliding(
     }
     let half = span / 2;
     let basis = orthonormal_polynomials(span, degree);
-    // At position i of the window: Σ_j kernel(i)_j x_j with kernel(i)_j = Σ_k (functional of p_k at i) p_k(j).
+    // At position i of the window: Σ_j kernel(i)_j x_j with kernel(i)_j = Σ_k (value or slope of p_k at i) p_k(j).
     let kernel = |i: usize| -> Vec<f64> {
-        let share = |p: &Polynomial| if functional == Functional::Value { p.value[i] } else { p.slope[i] };
-        let weight = |j: usize| basis.iter().map(|p| share(p) * p.value[j]).sum();
+        let weight = |j: usize| basis.iter().map(|p| of(p)[i] * p.value[j]).sum();
         (0..span).map(weight).collect()
     };
     let apply = |kernel: &[f64], window: &[f64]| -> f64 {
@@ -57,9 +48,10 @@ pub(super) fn sliding(
 
 /// A polynomial and its derivative on the points of a window.
 #[derive(Debug, Clone)]
-struct Polynomial {
-    value: Vec<f64>,
-    slope: Vec<f64>,
+pub(super) struct Polynomial {
+    pub(super) value: Vec<f64>,
+    /// Per sample.
+    pub(super) slope: Vec<f64>,
 }
 
 impl Polynomial {
@@ -102,7 +94,7 @@ mod tests {
     use crate::error::says;
 
     fn savitzky_golay(values: &[f64], span: usize, degree: usize) -> Result<Vec<f64>, RecordError> {
-        sliding(values, span, degree, Functional::Value)
+        sliding(values, span, degree, |p| &p.value)
     }
 
     /// Coefficients of the 1964 paper: (−3, 12, 17, 12, −3)/35 for 5 points and a quadratic or cubic.
@@ -134,7 +126,7 @@ mod tests {
     fn derivative_has_the_published_coefficients() {
         let mut impulse = vec![0.0; 21];
         impulse[10] = 10.0;
-        let slope = sliding(&impulse, 5, 2, Functional::Slope).unwrap();
+        let slope = sliding(&impulse, 5, 2, |p| &p.slope).unwrap();
         for (offset, expected) in [(0, 0.0), (1, -1.0), (2, -2.0), (3, 0.0)] {
             assert!((slope[10 + offset] - expected).abs() < 1e-12, "{}", slope[10 + offset]);
             assert!((slope[10 - offset] + expected).abs() < 1e-12, "{}", slope[10 - offset]);

@@ -51,20 +51,22 @@ impl Examination<'_> {
         let mut rest = Rest::of(beginning, floor);
         let mut departure = rest.departure(values)?;
         // A longer rest knows its level and its noise better.
-        if departure.index >= SHORTEST {
-            rest = Rest::of(&values[..departure.index / 5 * 4], floor);
+        if departure.0 >= SHORTEST {
+            rest = Rest::of(&values[..departure.0 / 5 * 4], floor);
             departure = rest.departure(values)?;
         }
-        let extremum = rest.extremum(values, &departure, 0.1 * half_range);
-        if departure.index < SHORTEST || !rest.outlasts_a_sine(&departure, extremum) {
+        let extremum = rest.extremum(values, departure, 0.1 * half_range);
+        if departure.0 < SHORTEST || !rest.outlasts_a_sine(departure.0, extremum) {
             return None;
         }
-        let onset = rest.onset(values, &departure, extremum, record.quantity());
-        let guard = 1 + departure.index / 50;
-        let samples = (onset.floor().max(0.0) as usize).min(departure.index).saturating_sub(guard).max(SHORTEST - 4);
+        let onset = rest.onset(values, departure, extremum, record.quantity());
+        let guard = 1 + departure.0 / 50;
+        let samples = (onset.floor().max(0.0) as usize).min(departure.0).saturating_sub(guard).max(SHORTEST - 4);
         let quiet = &values[..samples];
         let offset = mean(quiet);
-        Some(Release { rest_end: record.time_at(onset), offset, noise: deviation(quiet, offset), samples })
+        let squares: f64 = quiet.iter().map(|value| (value - offset).powi(2)).sum();
+        let noise = (squares / samples.saturating_sub(1).max(1) as f64).sqrt();
+        Some(Release { rest_end: record.time_at(onset), offset, noise, samples })
     }
 }
 
@@ -72,19 +74,6 @@ impl Examination<'_> {
 struct Rest {
     level: f64,
     band: f64,
-}
-
-/// Place and side at which the band is left.
-struct Departure {
-    index: usize,
-    side: f64,
-}
-
-/// The first extremum of the motion and its distance from the level.
-#[derive(Clone, Copy)]
-struct Extremum {
-    index: usize,
-    height: f64,
 }
 
 impl Rest {
@@ -99,7 +88,8 @@ impl Rest {
         side * (value - self.level)
     }
 
-    fn departure(&self, values: &[f64]) -> Option<Departure> {
+    /// Place and side at which the band is left.
+    fn departure(&self, values: &[f64]) -> Option<(usize, f64)> {
         let side =
             |value: f64| if (value - self.level).abs() > self.band { (value - self.level).signum() } else { 0.0 };
         values
@@ -108,22 +98,22 @@ impl Rest {
                 let first = side(window[0]);
                 first != 0.0 && window.iter().all(|value| side(*value) == first)
             })
-            .map(|index| Departure { index, side: side(values[index]) })
+            .map(|index| (index, side(values[index])))
     }
 
-    /// The first extremum after the departure, from which the values return by more than the band, a tenth of the
+    /// The first extremum after the departure and its distance from the level, from which the values return by more than the band, a tenth of the
     /// way there, and `ripple`.
-    fn extremum(&self, values: &[f64], departure: &Departure, ripple: f64) -> Extremum {
-        let mut best = Extremum { index: departure.index, height: 0.0 };
-        for (index, value) in values.iter().enumerate().skip(departure.index) {
-            let off = self.off(*value, departure.side);
-            if off > best.height {
-                best = Extremum { index, height: off };
-            } else if best.height - off > self.band.max(0.1 * best.height).max(ripple) {
+    fn extremum(&self, values: &[f64], (left, side): (usize, f64), ripple: f64) -> (usize, f64) {
+        let (mut place, mut height) = (left, 0.0);
+        for (index, value) in values.iter().enumerate().skip(left) {
+            let off = self.off(*value, side);
+            if off > height {
+                (place, height) = (index, off);
+            } else if height - off > self.band.max(0.1 * height).max(ripple) {
                 break;
             }
         }
-        best
+        (place, height)
     }
 
     /// True if the rest is longer than a sine in motion stays within the band around a turning point.
@@ -135,35 +125,39 @@ impl Rest {
     /// A sine that enters the band on the far side, turns at its near side and leaves it again makes an excursion
     /// e of two bands (some more is allowed for noise), before and after turning. H is the distance to its other
     /// extremum, which it reaches after T.
-    fn outlasts_a_sine(&self, departure: &Departure, extremum: Extremum) -> bool {
+    fn outlasts_a_sine(&self, left: usize, (turn, height): (usize, f64)) -> bool {
         const EXCURSION: f64 = 2.5;
-        let part = EXCURSION * self.band / (extremum.height + self.band);
+        let part = EXCURSION * self.band / (height + self.band);
         if part >= 0.5 {
             return false;
         }
         let phase = (1.0 - 2.0 * part).acos() / PI;
-        let half_cycle = (extremum.index - departure.index) as f64 / (1.0 - phase);
-        departure.index as f64 > 2.0 * phase * half_cycle
+        let half_cycle = (turn - left) as f64 / (1.0 - phase);
+        left as f64 > 2.0 * phase * half_cycle
     }
 
     /// Start of the motion (samples): the onset of the sine that fits the rest and the first part of the way to the
     /// first extremum best.
-    fn onset(&self, values: &[f64], departure: &Departure, extremum: Extremum, quantity: Quantity) -> f64 {
+    fn onset(
+        &self,
+        values: &[f64],
+        (left, side): (usize, f64),
+        (extremum, height): (usize, f64),
+        quantity: Quantity,
+    ) -> f64 {
         const PART: f64 = 0.25;
-        let left = departure.index as f64;
         if quantity == Quantity::Acceleration {
-            return left - 0.5;
+            return left as f64 - 0.5;
         }
-        let Extremum { index: extremum, height } = extremum;
-        let way = values[departure.index..extremum]
+        let way = values[left..extremum]
             .iter()
-            .take_while(|value| self.off(**value, departure.side) < PART * height)
+            .take_while(|value| self.off(**value, side) < PART * height)
             .count()
             .max(PERSISTENT);
-        let end = (departure.index + way).min(values.len());
+        let end = (left + way).min(values.len());
         // As much rest again as it may take to leave the band, with a margin.
-        let begin = departure.index.saturating_sub(2 * way + SHORTEST);
-        let off: Vec<f64> = values[begin..end].iter().map(|value| self.off(*value, departure.side)).collect();
+        let begin = left.saturating_sub(2 * way + SHORTEST);
+        let off: Vec<f64> = values[begin..end].iter().map(|value| self.off(*value, side)).collect();
         let turn = (extremum.max(end) - begin) as f64;
         let shape = |onset: f64, i: usize| {
             let part = (i as f64 - onset).max(0.0) / (turn - onset);
@@ -211,12 +205,6 @@ fn scatter_about_line(values: &[f64]) -> f64 {
     let points = values.iter().enumerate().map(|(i, value)| (1.0, value - level, [1.0, i as f64]));
     let fit = LeastSquares::of(&points.collect::<Vec<_>>());
     fit.map_or(0.0, |fit| (fit.residual / fit.freedom).sqrt())
-}
-
-/// Standard deviation about `mean`.
-fn deviation(values: &[f64], mean: f64) -> f64 {
-    let sum: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (sum / values.len().saturating_sub(1).max(1) as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -73,12 +73,8 @@ const HIGHEST: f64 = 0.45;
 /// True if the half cycles rise and fall like those of two modes: a modulation leaves less than a fifth of the
 /// squares. (Of two modes it left up to a tenth, after a push in motion more than a third.)
 pub(crate) fn beats(examination: &Examination) -> bool {
-    let beats = |modulation: Modulation| modulation.residuals.0 < EXPLAINED * modulation.residuals.1;
-    let modulation = |motion: Motion| {
-        let heights = motion.large();
-        Modulation::of(heights).filter(|modulation| modulation.is_significant(heights.len()))
-    };
-    Motion::of(examination).and_then(modulation).is_some_and(beats)
+    let beats = |Modulation { residuals: (with, without), .. }| with < EXPLAINED * without;
+    Motion::of(examination).and_then(|motion| Modulation::of(motion.large())).is_some_and(beats)
 }
 
 impl Examination<'_> {
@@ -161,12 +157,8 @@ impl Motion {
     /// A modulation of the half cycles.
     fn beat(&self) -> Option<SecondMode> {
         let heights = self.large();
-        if let Some(modulation) = Modulation::of(heights)
-            && modulation.is_significant(heights.len())
-        {
-            return Some(self.beside(modulation.nu, modulation.share));
-        }
-        rise(heights).map(|(nu, share)| self.beside(nu, share))
+        let found = Modulation::of(heights).map(|Modulation { nu, share, .. }| (nu, share)).or_else(|| rise(heights));
+        found.map(|(nu, share)| self.beside(nu, share))
     }
 
     /// Heights of the half cycles that friction changes at a steady rate. The last one may end where it stops them.
@@ -206,11 +198,11 @@ struct Modulation {
     share: f64,
     /// Sum of the squared residuals, and without the modulation.
     residuals: (f64, f64),
-    freedom: f64,
 }
 
 impl Modulation {
-    /// The modulation that leaves the least residual about a cubic.
+    /// The modulation that leaves the least residual about a cubic, if noise alone would seldom do this: F of two
+    /// coefficients exceeds x with the probability (1 + 2x/ν)^(−ν/2).
     fn of(heights: &[f64]) -> Option<Self> {
         const STEPS: f64 = 8.0;
         let count = heights.len();
@@ -228,22 +220,17 @@ impl Modulation {
                 [one, s1, s2, s3, one * cos, one * sin]
             }))?;
             let share = fit.coefficients[4].hypot(fit.coefficients[5]);
-            Some(Self { nu, share, residuals: (fit.residual, without), freedom: fit.freedom })
+            Some((Self { nu, share, residuals: (fit.residual, without) }, fit.freedom))
         };
-        (0..8 * MOST as u32)
+        let (best, freedom) = (0..8 * MOST as u32)
             .map(|i| (CYCLES + f64::from(i) / STEPS) / count as f64)
             .take_while(|nu| *nu < HIGHEST)
             .filter_map(fit)
-            .min_by(|a, b| a.residuals.0.total_cmp(&b.residuals.0))
-    }
-
-    /// True if noise alone would seldom do this: F of two coefficients exceeds x with the probability (1 +
-    /// 2x/ν)^(−ν/2).
-    fn is_significant(&self, count: usize) -> bool {
-        let (with, without) = self.residuals;
-        let f = 0.5 * (without - with) / (with / self.freedom);
-        let limit = 0.5 * self.freedom * ((count as f64 / FALSE_RATE).powf(2.0 / self.freedom) - 1.0);
-        f > limit && self.share > BEAT
+            .min_by(|a, b| a.0.residuals.0.total_cmp(&b.0.residuals.0))?;
+        let with = best.residuals.0;
+        let f = 0.5 * (without - with) / (with / freedom);
+        let limit = 0.5 * freedom * ((count as f64 / FALSE_RATE).powf(2.0 / freedom) - 1.0);
+        (f > limit && best.share > BEAT).then_some(best)
     }
 }
 

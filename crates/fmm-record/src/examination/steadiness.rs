@@ -34,17 +34,6 @@ struct Segment {
     scatter: f64,
 }
 
-impl Segment {
-    fn weight(&self) -> f64 {
-        self.scatter.powi(-2)
-    }
-
-    /// Standard deviation of the phase (rad).
-    fn phase_scatter(&self) -> f64 {
-        self.scatter / self.amplitude
-    }
-}
-
 /// The line of `candidate` in `values`, sharper, and its phase as a cosine at the first sample (rad); `None` unless it
 /// is as large and in phase wherever it can be seen.
 ///
@@ -125,24 +114,20 @@ fn level(segments: &[Segment]) -> f64 {
 }
 
 fn weights(segments: &[Segment]) -> impl Iterator<Item = f64> + '_ {
-    let most = 10.0 * median(&mut segments.iter().map(Segment::weight).collect::<Vec<_>>());
-    segments.iter().map(move |segment| segment.weight().min(most))
+    let weights = segments.iter().map(|segment| segment.scatter.powi(-2));
+    let most = 10.0 * median(&mut weights.clone().collect::<Vec<_>>());
+    weights.map(move |weight| weight.min(most))
 }
 
 /// True if the amplitudes neither rise nor fall.
 fn is_level(segments: &[Segment], amplitude: f64) -> bool {
     let points =
-        weights(segments).zip(segments).map(|(weight, segment)| (weight, segment.amplitude, line(segment.time)));
+        weights(segments).zip(segments).map(|(weight, segment)| (weight, segment.amplitude, [1.0, segment.time]));
     let Some(fit) = LeastSquares::of(&points.collect::<Vec<_>>()) else { return false };
     let span = segments[segments.len() - 1].time - segments[0].time;
     // Neighbours share half of their samples. The weights are inverse variances.
     let scatter = fit.inverse[1].sqrt();
     (fit.coefficients[1] * span).abs() <= CHANGE * amplitude + SCATTER * 1.2 * scatter * span
-}
-
-/// Functions of a straight line at a time.
-fn line(time: f64) -> [f64; 2] {
-    [1.0, time]
 }
 
 /// Slope (rad per sample) and intercept (rad) of the straight line through the phases; `None` if they do not lie on
@@ -156,14 +141,14 @@ fn in_phase(segments: &[Segment]) -> Option<(f64, f64)> {
         let expected = match points.as_slice() {
             [] => segment.phase,
             [(_, phase, _)] | [_, (_, phase, _)] => *phase,
-            _ => LeastSquares::of(&points)?.at(&line(segment.time)),
+            _ => LeastSquares::of(&points)?.at(&[1.0, segment.time]),
         };
         let turns = ((expected - segment.phase) / TAU).round();
-        points.push((*weight, segment.phase + TAU * turns, line(segment.time)));
+        points.push((*weight, segment.phase + TAU * turns, [1.0, segment.time]));
     }
     let fit = LeastSquares::of(&points)?;
     let on_line = points.iter().zip(segments.iter().rev()).all(|((_, phase, functions), segment)| {
-        (phase - fit.at(functions)).abs() <= PHASE + SCATTER * segment.phase_scatter().min(PI / SCATTER)
+        (phase - fit.at(functions)).abs() <= PHASE + SCATTER * (segment.scatter / segment.amplitude).min(PI / SCATTER)
     });
     on_line.then_some((fit.coefficients[1], fit.coefficients[0]))
 }

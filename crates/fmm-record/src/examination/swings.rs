@@ -105,9 +105,12 @@ impl Swings {
         if fitted.len() < 2 {
             return Self::default();
         }
-        let peaks: Vec<Peak> = fitted.iter().map(|fit| fit.peak(record)).collect();
+        let peak = |&Fitted { at, value, is_maximum, .. }: &Fitted| {
+            let index = (at.round().max(0.0) as usize).min(record.len() - 1);
+            Peak { time: record.time_at(at), value, index, is_maximum }
+        };
         let crossings = crossings(record, values, &fitted);
-        Self { peaks, crossings }
+        Self { peaks: fitted.iter().map(peak).collect(), crossings }
     }
 
     /// The turning points, maxima and minima by turns, one per half cycle.
@@ -172,11 +175,6 @@ impl Fitted {
     /// True if the values turn here as in a swing, instead of resting.
     fn turns(&self) -> bool {
         (0.3..3.0).contains(&self.curvature)
-    }
-
-    fn peak(&self, record: &Record) -> Peak {
-        let index = (self.at.round().max(0.0) as usize).min(record.len() - 1);
-        Peak { time: record.time_at(self.at), value: self.value, index, is_maximum: self.is_maximum }
     }
 }
 

@@ -26,7 +26,7 @@ impl ByteOrder {
 #[cfg(any(feature = "mat", feature = "npy"))]
 pub(crate) struct Number {
     kind: Kind,
-    width: usize,
+    pub(crate) width: usize,
     order: ByteOrder,
 }
 
@@ -45,11 +45,6 @@ impl Number {
     pub(crate) fn of(kind: Kind, width: usize, order: ByteOrder) -> Option<Self> {
         let is_known = if kind == Kind::Real { matches!(width, 4 | 8) } else { matches!(width, 1 | 2 | 4 | 8) };
         is_known.then_some(Self { kind, width, order })
-    }
-
-    /// Bytes of a number.
-    pub(crate) fn width(self) -> usize {
-        self.width
     }
 
     /// The number in `bytes`, which are as many as its width. (Whole numbers beyond 2⁵³ are rounded.)

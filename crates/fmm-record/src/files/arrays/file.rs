@@ -90,17 +90,7 @@ impl ArrayFile {
             }
         }
     }
-}
 
-#[cfg(test)]
-impl ArrayFile {
-    /// The record of a channel, with everything else found out by itself.
-    pub(crate) fn channel(&self, name: &str) -> Result<crate::files::reading::Reading, RecordError> {
-        self.read(&crate::files::Reader::default().channel(name))
-    }
-}
-
-impl ArrayFile {
     /// Makes a record of the channel that a reader names.
     ///
     /// The channel is a vector, or a row or column of a matrix. Where none is named, a matrix must have two columns, or
@@ -193,7 +183,10 @@ impl ArrayFile {
             let parent = parent(other.name());
             parent.is_empty() || array.name().strip_prefix(parent).is_some_and(|rest| rest.starts_with('.'))
         };
-        self.arrays.iter().filter(speaks).filter_map(|other| other.scalar().map(|value| (other.name(), value)))
+        self.arrays
+            .iter()
+            .filter(speaks)
+            .filter_map(|other| if let [value] = other.values[..] { Some((other.name(), value)) } else { None })
     }
 
     /// Time stamps beside the channel: in the first row or column of its matrix, or in a vector of the same length that
@@ -219,6 +212,14 @@ impl ArrayFile {
                 && other.values().len() == length
                 && other.name() != array.name()
         })
+    }
+}
+
+#[cfg(test)]
+impl ArrayFile {
+    /// The record of a channel, with everything else found out by itself.
+    pub(crate) fn channel(&self, name: &str) -> Result<crate::files::reading::Reading, RecordError> {
+        self.read(&crate::files::Reader::default().channel(name))
     }
 }
 

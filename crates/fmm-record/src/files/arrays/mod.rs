@@ -43,11 +43,6 @@ impl Array {
         &self.values
     }
 
-    /// The single number, if it is one.
-    pub(super) fn scalar(&self) -> Option<f64> {
-        if let [value] = self.values[..] { Some(value) } else { None }
-    }
-
     /// True for a series of at least two numbers.
     pub(super) fn is_vector(&self) -> bool {
         self.values.len() >= 2 && self.shape.len() <= 2 && self.matrix().is_none()

@@ -16,13 +16,6 @@ pub(super) enum Separator {
     Blanks,
 }
 
-impl Separator {
-    /// True if a comma within a field may be a decimal comma.
-    pub(super) fn leaves_comma(self) -> bool {
-        self != Self::Sign(b',')
-    }
-}
-
 /// Places of the fields of `line`, without blanks and quotes around them. A quote that is not closed on the line is an
 /// ordinary character.
 pub(super) fn split(line: &[u8], separator: Separator, fields: &mut Vec<Range<usize>>) {
@@ -110,60 +103,32 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Decimal mark of a number; `None` if it has no fraction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Mark {
-    Point,
-    Comma,
-}
-
-/// The number in `field`, if it is one. A decimal comma counts only where commas do not separate columns.
-pub(super) fn number(field: &[u8], separator: Separator) -> Option<(f64, Option<Mark>)> {
+/// The number in `field`, if it is one, and its decimal mark, if it has one. A decimal comma counts only where commas do not separate columns.
+pub(super) fn number(field: &[u8], separator: Separator) -> Option<(f64, Option<char>)> {
     let text = std::str::from_utf8(field).ok()?;
     if let Ok(value) = text.parse::<f64>() {
-        return Some((value, text.contains('.').then_some(Mark::Point)));
+        return Some((value, text.contains('.').then_some('.')));
     }
-    if !separator.leaves_comma() || text.contains('.') || text.ends_with(',') {
+    if separator == Separator::Sign(b',') || text.contains('.') || text.ends_with(',') {
         return None;
     }
-    text.replacen(',', ".", 1).parse().ok().map(|value| (value, Some(Mark::Comma)))
+    text.replacen(',', ".", 1).parse().ok().map(|value| (value, Some(',')))
 }
 
 /// Length of a written number: digits behind the decimal mark, and characters of its exponent and of the rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Digits {
-    fraction: usize,
-    exponent: usize,
-    whole: usize,
+pub(super) fn digits(field: &[u8]) -> [usize; 3] {
+    let exponent = field.iter().position(|byte| matches!(byte, b'e' | b'E'));
+    let mantissa = &field[..exponent.unwrap_or(field.len())];
+    let mark = mantissa.iter().position(|byte| matches!(byte, b'.' | b','));
+    let fraction = mark.map_or(0, |mark| mantissa.len() - mark - 1);
+    [fraction, exponent.map_or(0, |at| field.len() - at), mark.unwrap_or(mantissa.len())]
 }
 
-impl Digits {
-    pub(super) fn of(field: &[u8]) -> Self {
-        let exponent = field.iter().position(|byte| matches!(byte, b'e' | b'E'));
-        let mantissa = &field[..exponent.unwrap_or(field.len())];
-        let mark = mantissa.iter().position(|byte| matches!(byte, b'.' | b','));
-        Self {
-            fraction: mark.map_or(0, |mark| mantissa.len() - mark - 1),
-            exponent: exponent.map_or(0, |at| field.len() - at),
-            whole: mark.unwrap_or(mantissa.len()),
-        }
-    }
-
-    /// The least of both of two numbers.
-    pub(super) fn least(self, other: Self) -> Self {
-        Self {
-            fraction: self.fraction.min(other.fraction),
-            exponent: self.exponent.min(other.exponent),
-            whole: self.whole.min(other.whole),
-        }
-    }
-
-    /// True if fewer are written than in the `least` of others.
-    pub(super) fn are_fewer_than(self, least: Self) -> bool {
-        // Numbers that all have a fraction or an exponent end with it.
-        let is_whole = least.fraction == 0 && least.exponent == 0;
-        self.fraction < least.fraction || self.exponent < least.exponent || (is_whole && self.whole < least.whole)
-    }
+/// True if fewer digits are written than in the `least` of others.
+pub(super) fn are_fewer(digits: [usize; 3], least: [usize; 3]) -> bool {
+    // Numbers that all have a fraction or an exponent end with it.
+    let is_whole = least[..2] == [0, 0];
+    digits[0] < least[0] || digits[1] < least[1] || (is_whole && digits[2] < least[2])
 }
 
 /// A header without a table.
@@ -171,11 +136,11 @@ pub(super) const NO_ROWS: &str = "the file has a header but no rows of data belo
 
 /// A row with more or fewer fields than the first.
 pub(super) fn ragged(line: u64, expected: usize, found: usize, separator: Separator) -> RecordError {
-    let remedy = if separator.leaves_comma() {
-        ""
-    } else {
+    let remedy = if separator == Separator::Sign(b',') {
         "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
          the table, skip them"
+    } else {
+        ""
     };
     RecordError::on_line(line, format!("line {line} has {found} fields, but the first row has {expected}{remedy}"))
 }
@@ -209,8 +174,8 @@ mod tests {
     #[test]
     fn both_decimal_marks() {
         let (comma, semicolon) = (Separator::Sign(b','), Separator::Sign(b';'));
-        assert_eq!(number(b"1.5", comma), Some((1.5, Some(Mark::Point))));
-        assert_eq!(number(b"-1,5e-3", semicolon), Some((-1.5e-3, Some(Mark::Comma))));
+        assert_eq!(number(b"1.5", comma), Some((1.5, Some('.'))));
+        assert_eq!(number(b"-1,5e-3", semicolon), Some((-1.5e-3, Some(','))));
         assert_eq!(number(b"+15", semicolon), Some((15.0, None)));
         assert_eq!(number(b"1,5", comma), None);
         for text in ["", "1.234,5", "1,234,5", "abc", ",", "0x10", "1 5", "1,"] {
@@ -220,7 +185,7 @@ mod tests {
 
     #[test]
     fn digits_that_are_written() {
-        let digits = |text: &str| (Digits::of(text.as_bytes()).fraction, Digits::of(text.as_bytes()).exponent);
+        let digits = |text: &str| (digits(text.as_bytes())[0], digits(text.as_bytes())[1]);
         assert_eq!([digits("1"), digits("-1.25"), digits("1,5e-05"), digits("2.e")], [(0, 0), (2, 0), (1, 4), (0, 1)]);
     }
 }

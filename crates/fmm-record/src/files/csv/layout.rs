@@ -109,7 +109,7 @@ fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
 
 /// True if the commas of a table without another separator are decimal commas of one column of numbers.
 fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
-    let numbers: Vec<Comma> = lines.iter().rev().map_while(|line| Comma::of(line.text.trim_ascii())).collect();
+    let numbers: Vec<(i64, bool)> = lines.iter().rev().map_while(|line| before_comma(line.text.trim_ascii())).collect();
     if numbers.len() < lines.len().min(2) {
         return Ok(false);
     }
@@ -117,10 +117,10 @@ fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
         // A name without a comma is that of one column.
         return Ok(!above.text.contains(&b','));
     }
-    if numbers.iter().any(Comma::is_decimal) {
+    if numbers.iter().any(|(_, is_decimal)| *is_decimal) {
         return Ok(true);
     }
-    let counts = numbers.windows(2).all(|pair| pair[0].before == pair[1].before + 1);
+    let counts = numbers.windows(2).all(|pair| pair[0].0 == pair[1].0 + 1);
     if numbers.len() > 2 && counts {
         return Ok(false);
     }
@@ -131,32 +131,15 @@ fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
     Err(RecordError::options(what))
 }
 
-/// A number with at most one comma and no point, which may be two whole numbers.
-struct Comma {
-    before: i64,
-    after: Option<usize>,
-    is_padded: bool,
-    is_negative_zero: bool,
-}
-
-impl Comma {
-    fn of(text: &[u8]) -> Option<Self> {
-        let text = std::str::from_utf8(text).ok()?;
-        let (before, after) = text.split_once(',').map_or((text, None), |(before, after)| (before, Some(after)));
-        let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-        if after.is_some_and(|after| !digits(after)) || !digits(before.trim_start_matches(['-', '+'])) {
-            return None;
-        }
-        Some(Self {
-            before: before.parse().ok()?,
-            after: after.map(str::len),
-            is_padded: after.is_some_and(|after| after.len() > 1 && after.starts_with('0')),
-            is_negative_zero: before == "-0",
-        })
+/// The whole number before the comma of a number with at most one comma and no point, and true if it cannot be two whole
+/// numbers as programs write them.
+fn before_comma(text: &[u8]) -> Option<(i64, bool)> {
+    let text = std::str::from_utf8(text).ok()?;
+    let (before, after) = text.split_once(',').map_or((text, None), |(before, after)| (before, Some(after)));
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    if after.is_some_and(|after| !digits(after)) || !digits(before.trim_start_matches(['-', '+'])) {
+        return None;
     }
-
-    /// True if it cannot be two whole numbers as programs write them.
-    fn is_decimal(&self) -> bool {
-        self.after.is_none() || self.is_padded || self.is_negative_zero
-    }
+    let is_padded = after.is_none_or(|after| after.len() > 1 && after.starts_with('0'));
+    Some((before.parse().ok()?, is_padded || before == "-0"))
 }

@@ -31,7 +31,7 @@ impl Reader {
     /// Reads one channel of the text in `input`, which is buffered here.
     pub(crate) fn read_text(&self, input: impl Read) -> Result<Reading, RecordError> {
         let table = Table::open(input, self.separator, self.skip)?;
-        let columns = table.names().to_vec();
+        let columns = table.header.names.clone();
         let channel = self.channel.as_ref().map(|column| table.find(column)).transpose()?;
         let time = match &self.time {
             Some(column) => Some(table.find(column)?),
@@ -44,7 +44,7 @@ impl Reader {
         let rate = match self.rate {
             Some(rate) => Some((rate, Sampling::Given { rate })),
             None if time.is_some() => None,
-            None => stated(table.stated().iter().map(|(name, value)| (&name[..], *value)))?,
+            None => stated(table.header.stated.iter().map(|(name, value)| (&name[..], *value)))?,
         };
         let first = time.unwrap_or(table.first());
         let is_other =
@@ -100,7 +100,7 @@ impl Reader {
     /// header, only what is needed to find the time is read.
     pub(crate) fn text_channels(&self, input: impl Read) -> Result<Vec<(usize, String)>, RecordError> {
         let table = Table::open(input, self.separator, self.skip)?;
-        let columns = table.names().to_vec();
+        let columns = table.header.names.clone();
         let first = table.first();
         let blank: Vec<bool> = (0..columns.len()).map(|column| table.is_blank(column)).collect();
         let named = match &self.time {

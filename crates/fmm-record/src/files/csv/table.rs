@@ -8,7 +8,7 @@ use super::header::Header;
 use super::layout::Layout;
 use super::lines::{Line, Lines};
 use crate::error::RecordError;
-use crate::files::csv::fields::{Digits, Kind, Mark, NO_ROWS, Separator, not_a_number, number, ragged, split};
+use crate::files::csv::fields::{Kind, NO_ROWS, Separator, are_fewer, digits, not_a_number, number, ragged, split};
 use crate::files::reading::{Column, only};
 
 /// Length of the part of the file by which its layout is judged (bytes).
@@ -25,8 +25,8 @@ pub(super) struct Table<R> {
     fields: Vec<Range<usize>>,
     separator: Separator,
     columns: Vec<Kind>,
-    header: Header,
-    mark: Option<Mark>,
+    pub(super) header: Header,
+    mark: Option<char>,
 }
 
 impl<R: Read> Table<R> {
@@ -58,16 +58,6 @@ impl<R: Read> Table<R> {
         Ok(Self { head, lines, line, fields, separator, columns, header, mark })
     }
 
-    /// The names of the columns.
-    pub(super) fn names(&self) -> &[String] {
-        &self.header.names
-    }
-
-    /// Numbers that are stated above the table.
-    pub(super) fn stated(&self) -> &[(String, f64)] {
-        &self.header.stated
-    }
-
     /// The first column that holds anything.
     pub(super) fn first(&self) -> usize {
         self.columns.iter().position(|kind| *kind != Kind::Blank).unwrap_or(0)
@@ -89,16 +79,16 @@ impl<R: Read> Table<R> {
         let mut columns = [const { Vec::new() }; N];
         let last = self.columns.len() - 1;
         let is_last_in_use = chosen.contains(&last);
-        let mut least: Option<Digits> = None;
+        let mut least: Option<[usize; 3]> = None;
         while self.advance()? {
             self.check_width()?;
             for (values, &column) in columns.iter_mut().zip(&chosen) {
                 values.push(self.number(column)?);
             }
             if is_last_in_use {
-                let digits = Digits::of(self.field(last));
+                let digits = digits(self.field(last));
                 let rows = columns.first().map_or(0, Vec::len);
-                if !self.line.is_ended && rows > ENOUGH && least.is_some_and(|least| digits.are_fewer_than(least)) {
+                if !self.line.is_ended && rows > ENOUGH && least.is_some_and(|least| are_fewer(digits, least)) {
                     let (line, text) = (self.line.number, self.shown(last));
                     let what = format!(
                         "line {line} ends with \"{text}\" and without a line end, and all other numbers of its column have more \
@@ -106,7 +96,7 @@ impl<R: Read> Table<R> {
                     );
                     return Err(RecordError::on_line(line, what));
                 }
-                least = Some(least.map_or(digits, |least| least.least(digits)));
+                least = Some(std::array::from_fn(|i| least.map_or(digits[i], |least| least[i].min(digits[i]))));
             }
         }
         if columns.iter().any(Vec::is_empty) { Err(RecordError::damaged(NO_ROWS)) } else { Ok(columns) }
@@ -157,7 +147,7 @@ impl<R: Read> Table<R> {
         match (self.mark, mark) {
             (None, _) => self.mark = mark,
             (Some(earlier), Some(mark)) if earlier != mark => {
-                let [this, other] = if mark == Mark::Comma { ["comma", "point"] } else { ["point", "comma"] };
+                let [this, other] = if mark == ',' { ["comma", "point"] } else { ["point", "comma"] };
                 let (name, text) = (&self.header.names[column], self.shown(column));
                 let what = format!(
                     "line {line}, column \"{name}\": \"{text}\" has a decimal {this}, but earlier numbers have a decimal \

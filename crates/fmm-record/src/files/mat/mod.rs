@@ -18,7 +18,7 @@ mod tests;
 use crate::error::RecordError;
 use crate::files::arrays::{ArrayFile, Notation};
 use crate::files::mat::element::{Variables, byte_order, place};
-use crate::files::mat::numbers::add;
+use crate::files::mat::numbers::take_apart;
 
 #[cfg(feature = "hdf5")]
 pub(crate) use hdf5::parse as parse_hdf5;
@@ -30,9 +30,9 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
     let mut variables = Variables::new(bytes, order);
     let mut file = ArrayFile::new(Notation::Matlab);
     while let Some((offset, body)) = variables.next()? {
-        match body {
-            Ok(body) => add(&mut file, offset, &body, order),
-            Err(error) => file.damaged.push((place(offset), error)),
+        let taken = body.and_then(|body| take_apart(&body, order, None, 0, &mut file).map_err(RecordError::damaged));
+        if let Err(error) = taken {
+            file.damaged.push((place(offset), error));
         }
     }
     Ok(file)

@@ -3,7 +3,7 @@
 use crate::error::RecordError;
 use crate::files::arrays::ArrayFile;
 use crate::files::mat::class;
-use crate::files::mat::element::{MATRIX, place};
+use crate::files::mat::element::MATRIX;
 use crate::files::number::{ByteOrder, Kind, Number};
 
 const INT8: u32 = 1;
@@ -14,17 +14,10 @@ const COMPLEX: u32 = 0x0800;
 /// Structures within structures that are followed.
 const DEEPEST: usize = 32;
 
-/// Adds what a variable holds, with the fields of structures as variables of their own: `s.v`, or `s(2).v` where there
-/// are several. Nothing is found in one without a name, as the data that MATLAB keeps for its own objects are.
-pub(super) fn add(found: &mut ArrayFile, offset: usize, body: &[u8], order: ByteOrder) {
-    if let Err(what) = take_apart(body, order, None, 0, found) {
-        found.damaged.push((place(offset), RecordError::damaged(what)));
-    }
-}
-
-/// Takes an array apart; `field` is what it is called in its structure. An error is what is wrong before its name is
-/// known.
-fn take_apart(
+/// Takes an array apart, with the fields of structures as arrays of their own: `s.v`, or `s(2).v` where there are
+/// several; `field` is its name in its structure. Nothing is found in one without a name, as the data that MATLAB keeps
+/// for its own objects are. An error is a fault before its name is known.
+pub(super) fn take_apart(
     body: &[u8],
     order: ByteOrder,
     field: Option<String>,
@@ -122,7 +115,7 @@ fn numbers(parts: &mut Parts, dimensions: &[usize]) -> Result<Vec<f64>, &'static
     let part = parts.next().ok_or("its numbers are missing or cut off")?;
     let number = stored(part.code, parts.order).ok_or("its numbers are of an unknown type")?;
     let count = dimensions.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
-    if count.and_then(|count| count.checked_mul(number.width())) != Some(part.data.len()) {
+    if count.and_then(|count| count.checked_mul(number.width)) != Some(part.data.len()) {
         return Err("its dimensions do not match its amount of data");
     }
     Ok(number.values(part.data))

@@ -159,7 +159,7 @@ impl<'a> Literal<'a> {
         let number = stored(descr).ok_or_else(|| unsupported(&descr.chars().take(20).collect::<String>()))?;
         let count = shape.iter().try_fold(1usize, |count, length| count.checked_mul(*length));
         let count = count
-            .filter(|count| count.checked_mul(number.width()).is_some())
+            .filter(|count| count.checked_mul(number.width).is_some())
             .ok_or(error("its shape is beyond all memory"))?;
         Ok(Header { number, fortran, shape, count })
     }

@@ -69,7 +69,7 @@ fn array(mut input: impl Read, name: &str, budget: &mut usize) -> Result<(Vec<us
         return Err(too_large());
     }
     *budget -= count;
-    let promised = (count * number.width()) as u64;
+    let promised = (count * number.width) as u64;
     let mut bytes = Vec::new();
     input.by_ref().take(promised).read_to_end(&mut bytes).map_err(damaged)?;
     if (bytes.len() as u64) < promised {
@@ -87,29 +87,14 @@ fn array(mut input: impl Read, name: &str, budget: &mut usize) -> Result<(Vec<us
 
 /// Numbers of which the first axis varies first, in the order in which the last one does.
 fn row_after_row(values: &[f64], shape: &[usize]) -> Vec<f64> {
-    let strides: Vec<usize> = shape
-        .iter()
-        .scan(1usize, |stride, length| {
-            let own = *stride;
-            *stride = stride.saturating_mul(*length);
-            Some(own)
-        })
-        .collect();
-    let mut at = vec![0; shape.len()];
-    let mut offset = 0;
-    (0..values.len())
-        .map(|_| {
-            let value = values[offset];
-            for axis in (0..shape.len()).rev() {
-                at[axis] += 1;
-                offset += strides[axis];
-                if at[axis] < shape[axis] {
-                    break;
-                }
-                offset -= strides[axis] * shape[axis];
-                at[axis] = 0;
-            }
-            value
-        })
-        .collect()
+    let place = |index: usize| {
+        let (mut rest, mut place, mut stride) = (index, 0, values.len());
+        for length in shape.iter().rev() {
+            stride /= length;
+            place += rest % length * stride;
+            rest /= length;
+        }
+        place
+    };
+    (0..values.len()).map(|index| values[place(index)]).collect()
 }

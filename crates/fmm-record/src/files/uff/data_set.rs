@@ -5,7 +5,7 @@ use crate::files::reading::{Column, Reading, only, quoted};
 use crate::files::uff::UffFile;
 use crate::files::uff::header::{Axis, DataType, FunctionType, Header};
 use crate::record::{Record, Span};
-use crate::sampling::{Sampling, whole_hertz};
+use crate::sampling::{Sampling, in_six_digits, whole_hertz};
 use crate::units::seconds_in;
 
 /// A function as a data set 58 holds it. It has at least one point, and as many abscissae as ordinates.
@@ -106,19 +106,9 @@ impl DataSet {
         &self.ordinate
     }
 
-    /// Number of points; at least one.
-    pub fn len(&self) -> usize {
-        self.ordinate.len()
-    }
-
-    /// Always false: a data set has at least one point. It stands here because `len` does.
-    pub fn is_empty(&self) -> bool {
-        self.ordinate.is_empty()
-    }
-
     /// The abscissae of all points, as the file says them.
     pub fn abscissae(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
-        (0..self.len()).map(|index| match &self.abscissa {
+        (0..self.ordinate.len()).map(|index| match &self.abscissa {
             Abscissa::Even { start, step } => start + step * index as f64,
             Abscissa::Uneven(values) => values[index],
         })
@@ -129,9 +119,7 @@ impl DataSet {
         let description = &self.header.lines[0];
         if description.is_empty() { self.header.response.to_string() } else { description.clone() }
     }
-}
 
-impl DataSet {
     /// The record over time that this is, with the quantity and the unit of its ordinate.
     ///
     /// The format has six digits for the interval. If the file has no more, and a whole number of hertz agrees with
@@ -171,7 +159,7 @@ impl DataSet {
         let values = values.clone();
         let (record, sampling) = match self.abscissa() {
             Abscissa::Even { start, step } => {
-                let interval = if has_six_digits(*step) { whole_hertz(step * second) } else { step * second };
+                let interval = if in_six_digits(*step) == *step { whole_hertz(step * second) } else { step * second };
                 let sampling = Sampling::Header { interval: step * second, rate: interval.recip() };
                 (span.record(start * second, interval, values)?, sampling)
             }
@@ -185,17 +173,17 @@ impl DataSet {
     }
 }
 
-/// True if six digits are enough to write a number.
-fn has_six_digits(number: f64) -> bool {
-    format!("{number:.5e}").parse() == Ok(number)
-}
-
 impl UffFile {
     /// The part within `span` of a channel, or else of the only record over time.
     pub(crate) fn part(&self, channel: Option<&Column>, span: Span) -> Result<Reading, RecordError> {
-        let Some(channel) = channel else { return self.reading_of(self.only_over_time()?, span) };
-        let names = self.names();
-        self.reading_of(only(&channel.among(&[&names]), channel, "data set", &names)?, span)
+        let columns = self.names();
+        let index = match channel {
+            Some(channel) => only(&channel.among(&[&columns]), channel, "data set", &columns)?,
+            None => self.only_over_time()?,
+        };
+        let set = &self.sets()[index];
+        let (record, sampling) = set.sampled_record(span)?;
+        Ok(Reading { record, channel: set.name(), time: None, columns, sampling })
     }
 
     /// Position of the only record over time in the file.
@@ -212,11 +200,5 @@ impl UffFile {
     /// The names of all data sets 58, as [`DataSet::name`] calls them.
     pub fn names(&self) -> Vec<String> {
         self.sets().iter().map(DataSet::name).collect()
-    }
-
-    fn reading_of(&self, index: usize, span: Span) -> Result<Reading, RecordError> {
-        let set = &self.sets()[index];
-        let (record, sampling) = set.sampled_record(span)?;
-        Ok(Reading { record, channel: set.name(), time: None, columns: self.names(), sampling })
     }
 }

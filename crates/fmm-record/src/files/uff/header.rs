@@ -155,25 +155,22 @@ impl DataType {
 
     /// The quantity of a record with such an ordinate.
     pub fn quantity(self) -> Quantity {
-        match self {
-            Self::DISPLACEMENT => Quantity::Displacement,
-            Self::VELOCITY => Quantity::Velocity,
-            Self::ACCELERATION => Quantity::Acceleration,
-            Self::REACTION_FORCE | Self::EXCITATION_FORCE => Quantity::Force,
-            _ => Quantity::Other,
-        }
+        MEASURED.iter().find(|(data_type, _)| *data_type == self).map_or(Quantity::Other, |(_, quantity)| *quantity)
     }
 }
 
+/// Data types with the quantity that each stands for; of two for one quantity, the first is written.
+const MEASURED: [(DataType, Quantity); 5] = [
+    (DataType::DISPLACEMENT, Quantity::Displacement),
+    (DataType::VELOCITY, Quantity::Velocity),
+    (DataType::ACCELERATION, Quantity::Acceleration),
+    (DataType::EXCITATION_FORCE, Quantity::Force),
+    (DataType::REACTION_FORCE, Quantity::Force),
+];
+
 impl From<Quantity> for DataType {
     fn from(quantity: Quantity) -> Self {
-        match quantity {
-            Quantity::Displacement => Self::DISPLACEMENT,
-            Quantity::Velocity => Self::VELOCITY,
-            Quantity::Acceleration => Self::ACCELERATION,
-            Quantity::Force => Self::EXCITATION_FORCE,
-            Quantity::Other => Self::UNKNOWN,
-        }
+        MEASURED.iter().find(|(_, other)| *other == quantity).map_or(Self::UNKNOWN, |(data_type, _)| *data_type)
     }
 }
 

@@ -40,7 +40,7 @@ use std::path::Path;
 
 use crate::error::RecordError;
 use crate::files::uff::lines::{Line, Lines, is_delimiter};
-use crate::files::uff::points::{Encoding, binary, text};
+use crate::files::uff::points::{binary, encoding, text};
 use crate::files::uff::records::shown;
 
 pub use crate::files::number::ByteOrder;
@@ -144,14 +144,14 @@ impl UffFile {
     /// Reads a data set up to the delimiter behind it, of which `line` is the first line.
     fn take(&mut self, is_binary: bool, line: &Line, lines: &mut Lines) -> Result<(), RecordError> {
         let begin = line.number;
-        let encoding = if is_binary { Some(Encoding::of(line)?) } else { None };
+        let encoding = if is_binary { Some(encoding(line)?) } else { None };
         let Some((header, form)) = records::read(lines)? else {
             self.warnings.push(format!("the file ends within the header of the data set at line {begin}"));
             return Ok(());
         };
         let numbers = match encoding {
             None => text(lines, &form, begin, &mut self.warnings)?,
-            Some(encoding) => binary(lines, &form, &encoding, begin, &mut self.warnings)?,
+            Some(encoding) => binary(lines, &form, encoding, begin, &mut self.warnings)?,
         };
         let points = numbers.chunks_exact(form.numbers());
         let (promised, present) = (form.count, points.len());

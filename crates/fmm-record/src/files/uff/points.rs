@@ -47,37 +47,29 @@ pub(super) fn text(
     Ok(found)
 }
 
-/// Description of the bytes of a binary data set, in its first line.
-pub(super) struct Encoding {
-    order: ByteOrder,
-    /// Number of bytes that the line states; 0 if it states none.
-    stated: u64,
-}
-
-impl Encoding {
-    /// Reads the line: `58b`, order of bytes, format of numbers, number of lines in the header, number of bytes.
-    pub(super) fn of(line: &Line) -> Result<Self, RecordError> {
-        let text = shown(line.text);
-        let mut words = text.split_whitespace().skip(1).map(str::parse::<u64>);
-        let mut next = || words.next().and_then(Result::ok);
-        let order = match next() {
-            Some(1) => ByteOrder::Little,
-            Some(2) => ByteOrder::Big,
-            _ => {
-                let what = "the order of bytes must be 1 (little end first) or 2 (big end first)";
-                return Err(wrong_header(line.number, what, &text));
-            }
-        };
-        let format = next().unwrap_or_default();
-        if !matches!(format, 0 | 2) {
-            let line = line.number;
-            return Err(RecordError::unsupported(format!(
-                "line {line}: binary numbers of format {format} (1: VMS, 3: IBM) are not supported, only IEEE 754 (2)"
-            )));
+/// The order of bytes and their number, 0 if it is not stated, by the first line of a binary data set: `58b`, order of
+/// bytes, format of numbers, number of lines in the header, number of bytes.
+pub(super) fn encoding(line: &Line) -> Result<(ByteOrder, u64), RecordError> {
+    let text = shown(line.text);
+    let mut words = text.split_whitespace().skip(1).map(str::parse::<u64>);
+    let mut next = || words.next().and_then(Result::ok);
+    let order = match next() {
+        Some(1) => ByteOrder::Little,
+        Some(2) => ByteOrder::Big,
+        _ => {
+            let what = "the order of bytes must be 1 (little end first) or 2 (big end first)";
+            return Err(wrong_header(line.number, what, &text));
         }
-        let stated = words.nth(1).and_then(Result::ok).unwrap_or_default();
-        Ok(Self { order, stated })
+    };
+    let format = next().unwrap_or_default();
+    if !matches!(format, 0 | 2) {
+        let line = line.number;
+        return Err(RecordError::unsupported(format!(
+            "line {line}: binary numbers of format {format} (1: VMS, 3: IBM) are not supported, only IEEE 754 (2)"
+        )));
     }
+    let stated = words.nth(1).and_then(Result::ok).unwrap_or_default();
+    Ok((order, stated))
 }
 
 /// Number of bytes of the numbers of a point.
@@ -140,12 +132,11 @@ fn number(bytes: &[u8], order: ByteOrder) -> f64 {
 pub(super) fn binary(
     lines: &mut Lines,
     form: &Form,
-    encoding: &Encoding,
+    (order, stated): (ByteOrder, u64),
     begin: u64,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<f64>, RecordError> {
     let bytes = lines.rest();
-    let order = encoding.order;
     let layouts = Layout::all(form);
     let closed = layouts.iter().find_map(|layout| {
         let end = layout.bytes(form.count)?;
@@ -174,8 +165,7 @@ pub(super) fn binary(
     };
     let points = end / layout.point();
     let actual = (points * layout.point()) as u64;
-    if points as u64 == form.count && !matches!(encoding.stated, 0) && encoding.stated != actual {
-        let stated = encoding.stated;
+    if points as u64 == form.count && stated != 0 && stated != actual {
         warnings.push(format!("the data set at line {begin} states {stated} bytes, but its points have {actual}"));
     }
     lines.skip(next);

@@ -84,7 +84,7 @@ fn header(set: &DataSet, block: &mut Vec<u8>) -> Result<(), RecordError> {
     };
     block.push(b'\n');
     block.extend(integer("ordinate type", ordinate, 10)?);
-    block.extend(integer("number of points", i64::try_from(set.len()).unwrap_or(i64::MAX), 10)?);
+    block.extend(integer("number of points", i64::try_from(set.ordinate().len()).unwrap_or(i64::MAX), 10)?);
     block.extend(integer("spacing", spacing, 10)?);
     for value in [start, step, header.z] {
         block.extend(format!("{:>13}", scientific(value, 5)).into_bytes());
@@ -151,7 +151,7 @@ fn numbers(set: &DataSet) -> impl Iterator<Item = (bool, f64)> {
         Abscissa::Even { .. } => &[][..],
         Abscissa::Uneven(values) => values,
     };
-    (0..set.len()).flat_map(move |index| {
+    (0..set.ordinate().len()).flat_map(move |index| {
         let abscissa = abscissae.get(index).map(|value| (true, *value));
         let [first, second] = match set.ordinate() {
             Ordinate::Real(values) => [Some(values[index]), None],

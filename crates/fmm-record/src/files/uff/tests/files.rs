@@ -60,14 +60,14 @@ fn frequency_responses_as_text_and_bytes() {
     assert_eq!(values[319], [3.037_610_210_349_742e-6, -0.000_772_447_695_902_109_9]);
     for (name, digits) in [("impact_frf_ascii.uff", 12), ("impact_frf_ascii_single.uff", 6)] {
         let [text] = &sets(&file(name))[..] else { panic!("{name}") };
-        assert_eq!((text.abscissa(), text.len()), (set.abscissa(), 320));
+        assert_eq!((text.abscissa(), text.ordinate().len()), (set.abscissa(), 320));
         for (text, bytes) in complex(text).iter().flatten().zip(values.iter().flatten()) {
             assert_near(*text, *bytes, rounding(digits));
         }
     }
     // Every line from the second on, then fewer.
     let [uneven] = &sets(&file("impact_frf_ascii_uneven.uff"))[..] else { panic!() };
-    assert_eq!(uneven.len(), 111);
+    assert_eq!(uneven.ordinate().len(), 111);
     for (frequency, value) in uneven.abscissae().zip(complex(uneven)) {
         // Six digits of a frequency of up to 20 Hz leave 5e-5 Hz, well below the distance of 1/16 Hz.
         let even = values[(frequency * 16.0).round() as usize - 1];

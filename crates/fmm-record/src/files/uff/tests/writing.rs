@@ -59,7 +59,7 @@ fn bytes_keep_every_digit() {
     let text = again(&sets, Form::Ascii);
     assert_eq!(again(&text, Form::Ascii), text);
     for (text, set) in text.iter().zip(&sets) {
-        assert_eq!((&text.header, text.len()), (&set.header, set.len()));
+        assert_eq!((&text.header, text.ordinate().len()), (&set.header, set.ordinate().len()));
         let flat = |set: &DataSet| match set.ordinate() {
             Ordinate::Real(values) => values.clone(),
             Ordinate::Complex(values) => values.concat(),
