@@ -347,7 +347,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let State { position, velocity } = phase.state;
         let load = self.load(phase.piece, phase.time, position, velocity);
         let is_bent = steady.is_some() && self.has_bent_spring();
-        if is_bent && !phase.piece.waves().is_empty() {
+        if is_bent && !phase.piece.waves.is_empty() {
             let what = "a constant speed on a spring that is not linear under a force that swings";
             return Err(SimulationError::NotSupported { engine: "runge_kutta", what });
         }

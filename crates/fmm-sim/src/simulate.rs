@@ -81,11 +81,6 @@ struct Simulation<'a, D: Scalar, L> {
     trajectory: &'a mut Trajectory<D>,
 }
 
-/// True for an error of the exact engine that means: no closed form.
-const fn has_no_closed_form(error: &SimulationError) -> bool {
-    matches!(error, SimulationError::NoClosedForm { .. })
-}
-
 /// All laws share one copy of an engine that integrates. A copy for each law was a third of the compile time of a
 /// program with all laws; a run through a pointer to the law takes 1 to 5 % longer.
 impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
@@ -111,7 +106,7 @@ impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
             return self.sliding();
         }
         match Exact.run_into(self.scenario, self.sampling, self.trajectory) {
-            Err(error) if has_no_closed_form(&error) => self.sliding(),
+            Err(SimulationError::NoClosedForm { .. }) => self.sliding(),
             other => other,
         }
     }
@@ -130,7 +125,7 @@ impl<D: Scalar, L> LawVisitor<D, L> for Simulation<'_, D, L> {
         L: PiecewiseLinearLaw<D> + BristleLaw<D>,
     {
         match Exact.run_into(self.scenario, self.sampling, self.trajectory) {
-            Err(error) if has_no_closed_form(&error) => self.bristle(),
+            Err(SimulationError::NoClosedForm { .. }) => self.bristle(),
             other => other,
         }
     }

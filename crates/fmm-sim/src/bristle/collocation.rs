@@ -183,7 +183,7 @@ impl<D: Scalar> Collocation<D> {
         span: Span,
     ) -> bool {
         motion.load(STAGES / 2, &mut self.state);
-        field.jacobian(branch, &self.state, motion.scale(1), self.modes.jacobian_mut());
+        field.jacobian(branch, &self.state, motion.scale(1), &mut self.modes.jacobian);
         self.modes.factor(span.length)
     }
 

@@ -55,9 +55,9 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     /// True for each state whose rate has a corner at zero.
     bends: Vec<bool>,
     /// True for each state that has not yet come back through zero in this half cycle; it stays below zero until then.
-    below: Vec<bool>,
+    pub(super) below: Vec<bool>,
     /// True for each state that has reached its bound for the rest of this half cycle.
-    saturated: Vec<bool>,
+    pub(super) saturated: Vec<bool>,
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
@@ -96,11 +96,6 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         }
     }
 
-    /// True if the state of this `index` is to come back through zero.
-    pub(super) fn is_below(&self, index: usize) -> bool {
-        self.below[index]
-    }
-
     /// Finds the states with a corner of the rate or of the coefficient at zero by the even part of their change near
     /// zero, which is small beside the odd part for a smooth function. `per_second` (1/s) converts a deflection to a
     /// speed.
@@ -123,11 +118,6 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
             })
         };
         (0..size).map(corner).collect()
-    }
-
-    /// True if the state of this `index` has reached its bound for the rest of this half cycle.
-    pub(super) fn is_saturated(&self, index: usize) -> bool {
-        self.saturated[index]
     }
 
     /// Releases all saturated states, at the beginning of a half cycle.

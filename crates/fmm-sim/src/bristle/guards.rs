@@ -101,7 +101,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         }
         let drag = !self.field.oscillator.damping().is_linear() && self.field.belt.value() != 0.0;
         for component in 1..self.field.size() {
-            let may_bend = if component == 1 { drag } else { self.field.is_below(component - 2) };
+            let may_bend = if component == 1 { drag } else { self.field.below[component - 2] };
             if may_bend && self.step.begin[component].value() != 0.0 {
                 look(self.guard_polynomial(Guard::Corner(component)), Guard::Corner(component));
             }

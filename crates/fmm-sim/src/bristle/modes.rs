@@ -16,7 +16,8 @@ use crate::bristle::radau::{EIGENVALUES, STAGES, Stages};
 pub(super) struct Modes<D> {
     /// Right-hand sides, then solutions, of each component but the position.
     pub(super) values: Vec<Stages<D>>,
-    jacobian: Vec<f64>,
+    /// The Jacobian, row by row, to be filled before [`factor`](Self::factor).
+    pub(super) jacobian: Vec<f64>,
     factors: Factors,
 }
 
@@ -27,11 +28,6 @@ impl<D: Scalar> Modes<D> {
             jacobian: vec![0.0; size * size],
             factors: Factors::default(),
         }
-    }
-
-    /// The Jacobian, row by row, to be filled before [`factor`](Self::factor).
-    pub(super) fn jacobian_mut(&mut self) -> &mut [f64] {
-        &mut self.jacobian
     }
 
     /// The rate (1/s) at which neighbouring motions approach each other in a component.
@@ -93,7 +89,7 @@ mod tests {
             std::array::from_fn(|c| std::array::from_fn(|i| (c + 1) as f64 / (i as f64 + 1.5) - 0.3));
         known[0] = product(&COEFFICIENTS_COLUMNS, &known[1]).map(|x| x * length);
         let mut modes = Modes::<f64>::new(4);
-        modes.jacobian_mut().copy_from_slice(&jacobian.concat());
+        modes.jacobian.copy_from_slice(&jacobian.concat());
         assert!(modes.factor(length));
         assert_eq!([1, 2, 3].map(|component| modes.relaxation(component)), [0.3, 30.0, 8.0]);
         assert_eq!(modes.stiffness(), 30.0);

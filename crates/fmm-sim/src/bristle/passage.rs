@@ -48,7 +48,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
                     // The value is the corner to the last digit, whatever rounding makes of a sum.
                     *position = *position - position.value() + corner.position;
                 }
-                self.field.spring.enter(range);
+                self.field.spring.range = range;
                 self.collocation.forget();
                 Ok(())
             }
@@ -112,7 +112,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         self.field.rates(force, branch, begin, &mut self.after);
         let mass = self.field.oscillator.mass().value();
         let amplitude = |wave: &ForceWave<D>| wave.amplitude.value().abs();
-        let size = self.field.force_size(force, branch, begin) + piece.waves().iter().map(amplitude).sum::<f64>();
+        let size = self.field.force_size(force, branch, begin) + piece.waves.iter().map(amplitude).sum::<f64>();
         let load = self.after[1].value() * mass;
         let rounding = 4.0 * f64::EPSILON * size;
         // A motion on the bristles below the digits of the position does not count, unless the pull exceeds what they

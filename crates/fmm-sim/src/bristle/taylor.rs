@@ -74,7 +74,7 @@ impl<D: Scalar> Taylor<D> {
             series[0] = *begin;
         }
         let (sign, stiffness) = (branch.direction.sign(), field.oscillator.stiffness());
-        law.held = field.is_saturated(0);
+        law.held = field.saturated[0];
         for order in 0..ORDER {
             let per_order = unit / (order + 1) as f64;
             let relative = if order == 0 { velocity[0] - field.belt } else { velocity[order] };
@@ -198,7 +198,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         let (belt, sign) = (self.field.belt.value(), self.branch.direction.sign());
         let speed = zero_of(self.step.plain_series(1, belt, sign), at_zero).map(|tau| (tau, Guard::Speed));
         let state = self.step.begin[2].value();
-        let is_below = self.field.is_below(0) && state != 0.0;
+        let is_below = self.field.below[0] && state != 0.0;
         let corner = if is_below { zero_of(self.step.plain_series(2, 0.0, state.signum()), false) } else { None };
         let corner = corner.map(|tau| (tau, Guard::Corner(2)));
         let (tau, guard) = match (speed, corner) {

@@ -75,7 +75,7 @@ impl Cancellation {
         self.reached[1] = self.reached[1].max(mean);
         self.reaches(begin);
         self.reaches(end);
-        let free = path.free().map_or((0.0, 0.0, 0.0), |(decay, free)| {
+        let free = path.decay.map_or((0.0, 0.0, 0.0), |(decay, free)| {
             let (x, v) = plain(free);
             (x, v, decay.natural())
         });

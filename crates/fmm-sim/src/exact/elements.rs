@@ -287,7 +287,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
             let acceleration = velocity.state(-self.time + time).velocity;
             if self.at_rest { acceleration - acceleration.value() } else { acceleration }
         })?;
-        let frequency = path.frequencies().fold(plain.natural() + 2.0 * plain.rate(), f64::max);
+        let frequency = path.frequencies().fold(plain.natural() + 2.0 * plain.rate, f64::max);
         let oscillator = self.scenario.oscillator();
         recorder.work(self.time.value(), end, 1.0 / frequency, |time| {
             let State { position, velocity } = path.state(-self.time + time);

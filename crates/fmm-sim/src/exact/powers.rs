@@ -28,9 +28,9 @@ impl Powers {
     /// Powers for the half cycles of `decay` at the times of `sampling`; `None` if it does not oscillate or the times
     /// are not uniform.
     pub(super) fn for_swings<D: Scalar>(decay: &Decay<D>, sampling: &Sampling) -> Option<Self> {
-        let (half_cycle, interval) = (decay.half_cycle()?, sampling.interval()?);
+        let (half_cycle, interval) = (decay.half_cycle?, sampling.interval()?);
         let longest = (half_cycle.duration.value() / interval).min(sampling.count() as f64) as usize + 1;
-        Some(Self::new(decay.rate().value(), half_cycle.angular.value(), interval, longest))
+        Some(Self::new(decay.rate.value(), half_cycle.angular.value(), interval, longest))
     }
 
     /// Powers for at least `longest` samples, or [`LONGEST`] if that is less.
@@ -92,8 +92,8 @@ impl Powers {
         (centre, free): (D, State<D>),
         start: D,
     ) -> Result<(), SimulationError> {
-        let Some(half_cycle) = decay.half_cycle() else { return Ok(()) };
-        let wave = Wave { rate: decay.rate(), angular: half_cycle.angular, interval: self.interval };
+        let Some(half_cycle) = decay.half_cycle else { return Ok(()) };
+        let wave = Wave { rate: decay.rate, angular: half_cycle.angular, interval: self.interval };
         let channels = recorder.sampling.channels();
         let stop = recorder.sampling.index_at_or_after(end);
         while recorder.written < stop {
@@ -134,7 +134,7 @@ impl Powers {
             #[inline(always)]
             || {
                 let (c, s, o) = (cosine.value(), sine.value(), offset.value());
-                self.fill_with(&mut samples.values_mut()[range.clone()], |re, im, _| o + (c * re + s * im));
+                self.fill_with(&mut samples.values[range.clone()], |re, im, _| o + (c * re + s * im));
                 for direction in 0..D::DIRECTIONS {
                     let (rate, angular) = (wave.rate.partial(direction), wave.angular.partial(direction));
                     let (c0, s0, o0) = (cosine.partial(direction), sine.partial(direction), offset.partial(direction));

@@ -118,7 +118,7 @@ impl<'a, D: Scalar> Swing<'a, D> {
         if self.has_belt {
             forced.constant += self.normal_load * flow.friction.slope * self.belt;
         }
-        let damping = flow.decay.rate() * mass * 2.0;
+        let damping = flow.decay.rate * mass * 2.0;
         respond(forced, mass, damping, stiffness, &flow.decay, phase.state)
     }
 
@@ -241,7 +241,7 @@ impl<D: Scalar> Swing<'_, D> {
     ) -> Result<Ended<D>, SimulationError> {
         let path = self.position(flow, phase)?;
         let undisturbed = path.is_plainly_free() && !self.has_belt && phase.branch == Branch::Only;
-        let found = match path.free() {
+        let found = match path.decay {
             Some((decay, free)) if undisturbed => self
                 .next_rest(phase, path.constant, decay, free)
                 .filter(|(time, _)| time.value() <= phase.limit)
@@ -320,7 +320,7 @@ impl<D: Scalar> Swing<'_, D> {
         if !recorder.sampling.wants_work() {
             return Ok(());
         }
-        let frequency = path.frequencies().fold(flow.plain.natural() + 2.0 * flow.plain.rate(), f64::max);
+        let frequency = path.frequencies().fold(flow.plain.natural() + 2.0 * flow.plain.rate, f64::max);
         recorder.work(phase.time.value(), end, 1.0 / frequency, |time| {
             let velocity = path.state(-phase.time + time).velocity;
             let relative = velocity - self.belt;
@@ -340,7 +340,7 @@ fn write<D: Scalar>(
     end: f64,
     recorder: &mut Recorder<D>,
 ) -> Result<(), SimulationError> {
-    let (Some(powers), Some((decay, free))) = (powers, path.free()) else {
+    let (Some(powers), Some((decay, free))) = (powers, path.decay) else {
         return recorder.samples(end, |time| path.state(-start + time));
     };
     let first = recorder.written;

@@ -24,7 +24,8 @@ pub(crate) struct Curve<'a, D> {
     pub(crate) constant: D,
     pub(crate) slope: D,
     pub(crate) waves: Vec<Wave<D>>,
-    decay: Option<(&'a Decay<D>, State<D>)>,
+    /// The free decay and its state at τ = 0.
+    pub(crate) decay: Option<(&'a Decay<D>, State<D>)>,
 }
 
 /// Value, slope and curvature of a curve at one time.
@@ -55,7 +56,7 @@ impl<'a, D: Scalar> Curve<'a, D> {
             Wave { angular: wave.angular, cosine: wave.amplitude * cos, sine: -wave.amplitude * sin }
         };
         // Without waves nothing is collected, which is most of the time.
-        let waves = if piece.waves().is_empty() { Vec::new() } else { piece.waves().iter().map(wave).collect() };
+        let waves = if piece.waves.is_empty() { Vec::new() } else { piece.waves.iter().map(wave).collect() };
         Self { constant, slope, waves, decay: None }
     }
 
@@ -80,11 +81,6 @@ impl<'a, D: Scalar> Curve<'a, D> {
     pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> {
         let is_there = |wave: &&Wave<D>| wave.cosine.value() != 0.0 || wave.sine.value() != 0.0;
         self.waves.iter().filter(is_there).map(|wave| wave.angular.value())
-    }
-
-    /// The free decay and its state at τ = 0.
-    pub(crate) fn free(&self) -> Option<(&'a Decay<D>, State<D>)> {
-        self.decay
     }
 
     /// The value at τ = 0.

@@ -16,10 +16,12 @@ use crate::scenario::State;
 /// all derivatives, in between.
 #[derive(Debug)]
 pub(crate) struct Decay<D> {
-    rate: D,
+    /// a (1/s).
+    pub(crate) rate: D,
     square: D,
     spread: D,
-    half_cycle: Option<HalfCycle<D>>,
+    /// The half period, if the motion oscillates.
+    pub(crate) half_cycle: Option<HalfCycle<D>>,
 }
 
 /// One half period of an oscillating decay, from zero velocity to zero velocity.
@@ -53,19 +55,9 @@ impl<D: Scalar> Decay<D> {
         Self { rate, square, spread, half_cycle }
     }
 
-    /// a (1/s).
-    pub(crate) fn rate(&self) -> D {
-        self.rate
-    }
-
     /// ω₀ (rad/s).
     pub(crate) fn natural(&self) -> f64 {
         self.square.value().sqrt()
-    }
-
-    /// The half period, if the motion oscillates.
-    pub(crate) fn half_cycle(&self) -> Option<HalfCycle<D>> {
-        self.half_cycle
     }
 
     /// a v + ω₀² x, the negative slope of the sine part of the velocity.

@@ -32,7 +32,7 @@ pub(crate) struct Piece<D> {
     pub(crate) end: f64,
     force: D,
     slope: D,
-    waves: Vec<ForceWave<D>>,
+    pub(crate) waves: Vec<ForceWave<D>>,
     /// Normal load at the beginning (N), and its slope (N/s).
     load: D,
     load_slope: D,
@@ -53,10 +53,6 @@ impl<D: Scalar> Piece<D> {
     /// Normal load at `time` (N), and its slope (N/s).
     pub(crate) fn normal_load(&self, time: D) -> (D, D) {
         (self.load + self.load_slope * (time - self.start), self.load_slope)
-    }
-
-    pub(crate) fn waves(&self) -> &[ForceWave<D>] {
-        &self.waves
     }
 
     /// Angular frequencies (rad/s) of the waves that there are, those that exist in derivatives only left out: steps
@@ -127,23 +123,19 @@ pub(crate) struct Forcing<'a, D> {
 
 impl<'a, D: Scalar> Forcing<'a, D> {
     pub(crate) fn of<L: ?Sized>(scenario: &'a Scenario<D, L>) -> Self {
-        let drive = Self::new(scenario.excitations(), scenario.oscillator().mass());
-        drive.under(scenario.normal_load(), scenario.sampled_load())
+        let loads = (scenario.normal_load(), scenario.sampled_load());
+        Self::new(scenario.excitations(), scenario.oscillator().mass(), loads)
     }
 
-    /// The forcing with this normal load.
-    fn under(mut self, normal_load: D, sampled_load: Option<&'a SampledLoad<D>>) -> Self {
-        (self.normal_load, self.sampled_load) = (normal_load, sampled_load);
-        if let Some(SampledLoad { interval, values }) = sampled_load {
-            self.knots.extend((0..values.len()).map(|index| index as f64 * interval));
-            self.knots.sort_by(f64::total_cmp);
-            self.knots.dedup();
-        }
-        self
-    }
-
-    fn new(excitations: &'a [Excitation<D>], mass: D) -> Self {
+    fn new(
+        excitations: &'a [Excitation<D>],
+        mass: D,
+        (normal_load, sampled_load): (D, Option<&'a SampledLoad<D>>),
+    ) -> Self {
         let mut knots = vec![0.0];
+        if let Some(SampledLoad { interval, values }) = sampled_load {
+            knots.extend((0..values.len()).map(|index| index as f64 * interval));
+        }
         for Excitation { source, delay } in excitations {
             let delay = delay.value();
             match source {
@@ -165,7 +157,7 @@ impl<'a, D: Scalar> Forcing<'a, D> {
         }
         knots.sort_by(f64::total_cmp);
         knots.dedup();
-        Self { excitations, mass, normal_load: D::from(0.0), sampled_load: None, knots }
+        Self { excitations, mass, normal_load, sampled_load, knots }
     }
 
     /// True if the counterface moves, or may move in a derivative.
@@ -311,7 +303,7 @@ mod tests {
             Excitation::base(0.01, 20.0, 1.0).unwrap(),
             Excitation::belt(0.2).unwrap(),
         ];
-        let drive: Forcing<f64> = Forcing::new(&excitations, 2.0);
+        let drive: Forcing<f64> = Forcing::new(&excitations, 2.0, (0.0, None));
         // 0, the straight samples 1 and 2 left out, the pulse from 0.05 to 0.3, the last sample.
         assert_eq!(drive.pieces(), 6, "{:?}", drive.knots);
         assert_eq!(drive.belt(), 0.2);
@@ -337,7 +329,7 @@ mod tests {
     #[test]
     fn an_empty_record_is_no_force() {
         let excitations = [Excitation::<f64>::sampled_force(0.1, Vec::new()).unwrap()];
-        assert!(Forcing::new(&excitations, 1.0).piece(0).is_free());
+        assert!(Forcing::new(&excitations, 1.0, (0.0, None)).piece(0).is_free());
         assert!(Excitation::<f64>::sampled_force(0.1, vec![f64::NAN]).is_err());
         assert!(Excitation::<f64>::half_sine(1.0, 0.0).is_err());
         assert!(Excitation::<f64>::ramp(1.0).unwrap().delayed(-1.0).is_err());

@@ -15,7 +15,7 @@ pub(crate) const WEAK_SPRING: f64 = 1e-2;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spring<'a, D> {
     oscillator: &'a Oscillator<D>,
-    range: Range,
+    pub(crate) range: Range,
 }
 
 /// A range of positions without a corner of the spring within.
@@ -86,10 +86,5 @@ impl<'a, D: Scalar> Spring<'a, D> {
     /// The corner behind which the machine is in the range `next`.
     pub(crate) fn end_towards(&self, next: Range) -> Option<Corner> {
         self.ends().find(|corner| corner.next == next)
-    }
-
-    /// Goes on in another `range`.
-    pub(crate) const fn enter(&mut self, range: Range) {
-        self.range = range;
     }
 }

@@ -87,11 +87,6 @@ impl<D: Scalar> BySpeed<D> {
         crate::dormand_prince::error(self.growth.abs(), norm(time.0, position.0), norm(time.1, position.1))
     }
 
-    /// Lets these derivatives replace those of the step in the directions in which they are `better`.
-    pub(super) fn replace(&mut self, better: Vec<bool>) {
-        self.better = better;
-    }
-
     /// The `state`, of this `acceleration` (m/s²), with these derivatives if they are better, at a given time.
     ///
     /// Next to rest on a steep law the acceleration changes within the error of a step. The acceleration of the state
@@ -189,7 +184,7 @@ impl Refiner {
         if !better.contains(&true) {
             return None;
         }
-        motion.replace(better);
+        motion.better = better;
         let end = motion.derive(field, phase, step.end, step.last_acceleration().value());
         let acceleration = field.acceleration(phase, at.side, at.time + step.length, end);
         step.correct(end, acceleration - acceleration.value() + step.last_acceleration().value());

@@ -202,7 +202,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
 
     /// Goes on behind a corner of the spring.
     fn pass(&mut self, phase: &Phase<D>, at: &mut Progress<D>, range: Range) {
-        self.field.spring.enter(range);
+        self.field.spring.range = range;
         // An acceleration of the range before would be an error of the first stage.
         at.acceleration = self.field.acceleration(phase, at.side, at.time, at.state);
     }
@@ -368,8 +368,8 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
             }
             let mut error = step.error(scale) / self.tolerance;
             // In a creeping motion, values stay good beyond the limit of stability for long, but derivatives grow.
-            let stable = 0.9 * STABLE / step.stiffness();
-            if error <= 1.0 && step.stiffness() > STABLE {
+            let stable = 0.9 * STABLE / step.stiffness;
+            if error <= 1.0 && step.stiffness > STABLE {
                 self.shorten(&at, length * stable.max(0.1))?;
                 continue;
             }

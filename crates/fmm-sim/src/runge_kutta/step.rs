@@ -32,7 +32,7 @@ pub(super) struct Step<D> {
     /// Velocity and acceleration.
     rates: [Rates<D>; 2],
     /// Length times the decay rate of the velocity at the end (1).
-    stiffness: f64,
+    pub(super) stiffness: f64,
 }
 
 /// Length of a step times the decay rate of the velocity up to which the method damps a decay (1).
@@ -57,11 +57,6 @@ impl<D: Scalar> Step<D> {
         step(&start, length, &mut rates, &mut state, &mut end, rate_of(accelerate));
         let stiffness = length * decay_rate([state[1], end[1]], [rates[1][END - 1], rates[1][END]]);
         Self { begin, end: State { position: end[0], velocity: end[1] }, length, rates, stiffness }
-    }
-
-    /// Length times the rate at which neighbouring velocities approach each other at the end (1).
-    pub(super) fn stiffness(&self) -> f64 {
-        self.stiffness
     }
 
     /// Acceleration at the end.
@@ -199,13 +194,13 @@ mod tests {
             });
             assert!(step.end.velocity.abs() < 1.0, "{stiffness}: {}", step.end.velocity);
             assert!(
-                stiffness < 0.5 || (step.stiffness() / stiffness - 1.0).abs() < 1e-9,
+                stiffness < 0.5 || (step.stiffness / stiffness - 1.0).abs() < 1e-9,
                 "{stiffness}: {}",
-                step.stiffness()
+                step.stiffness
             );
         }
         let growing = Step::take(State { position: 0.0, velocity: 1.0 }, 5.0, 1.0, |_, state| 5.0 * state.velocity);
-        assert_eq!(growing.stiffness(), 0.0);
+        assert_eq!(growing.stiffness, 0.0);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::error::SimulationError;
 /// number type `D`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples<D> {
-    values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     partials: Vec<f64>,
     number: PhantomData<D>,
 }
@@ -36,10 +36,6 @@ impl<D: Scalar> Samples<D> {
             }
         }
         Ok(())
-    }
-
-    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
-        &mut self.values
     }
 
     /// The column of `direction`, which must be one that `D` carries.
