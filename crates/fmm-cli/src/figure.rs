@@ -160,10 +160,6 @@ impl Panel {
         HEADROOM.max(1.05 * share / (1.0 - share))
     }
 
-    fn layout(&self) -> Layout {
-        self.layout_below(self.headroom(), STEPS)
-    }
-
     /// Layout with this share of the data's range free above it, and at most this number of steps of ticks along x.
     fn layout_below(&self, headroom: f64, steps: f64) -> Layout {
         let corners = self.cells.iter().flat_map(|cells| [(cells.x.0, cells.y.0), (cells.x.1, cells.y.1)]);
@@ -189,7 +185,7 @@ pub fn drawn(panels: &[Panel]) -> String {
     let heights: Vec<f64> = panels.iter().map(|panel| panel.height).collect();
     let mut grid = Grid::new(panels.len(), 1)
         .with_plots(panels.iter().map(Panel::plots).collect())
-        .with_layouts(panels.iter().map(Panel::layout).collect())
+        .with_layouts(panels.iter().map(|panel| panel.layout_below(panel.headroom(), STEPS)).collect())
         .with_keep_panel_legends()
         .with_cell_size(WIDTH, heights[0]);
     for (row, height) in heights.into_iter().enumerate() {

@@ -14,7 +14,7 @@ use crate::files;
 use crate::input::{Choice, Given, Question};
 use crate::output::{Output, print, print_json, spinner};
 use crate::posterior::Posterior;
-use crate::report::{self, Found, Pictures};
+use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, FrictionCurve, ImpactTrial, Preparation};
@@ -123,37 +123,9 @@ struct Document<'a> {
     #[serde(flatten)]
     comparison: &'a Comparison,
     #[serde(skip_serializing_if = "Option::is_none")]
-    friction_curve: Option<Curve<'a>>,
+    friction_curve: &'a Option<Curve>,
     #[serde(skip_serializing_if = "Option::is_none")]
     posterior: &'a Option<Posterior>,
-}
-
-/// Friction over the speed without a law, or why it cannot be had.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Curve<'a> {
-    Found(&'a FrictionCurve),
-    Missing { missing: &'a str },
-}
-
-impl<'a> Curve<'a> {
-    fn of(found: &'a Result<FrictionCurve, String>) -> Self {
-        match found {
-            Ok(curve) => Self::Found(curve),
-            Err(reason) => Self::Missing { missing: reason },
-        }
-    }
-
-    /// Three numbers of the curve and what speaks against it, or why there is none.
-    fn text(&self) -> String {
-        match self {
-            Self::Found(curve) => {
-                let limits = curve.limits().iter().map(|limit| format!("; {limit}"));
-                std::iter::once(curve.headline()).chain(limits).chain([".".to_owned()]).collect()
-            }
-            Self::Missing { missing } => format!("friction over speed, no law assumed: none, as {missing}."),
-        }
-    }
 }
 
 /// Reads, prepares and fits the record; by a search unless there are `candidates`.
@@ -194,10 +166,12 @@ fn give_out(
     let mut found = found(arguments, candidates)?;
     found.curve = with_curve.then(|| {
         if arguments.question.is_over(begun) {
-            return Err("the time limit is over".to_owned());
+            return Curve::Missing { missing: "the time limit is over".to_owned() };
         }
-        let curve = FrictionCurve::beside(found.comparison.preferred(), std::slice::from_ref(&found.decay));
-        curve.map_err(|error| error.to_string())
+        match FrictionCurve::beside(found.comparison.preferred(), std::slice::from_ref(&found.decay)) {
+            Ok(curve) => Curve::Found(Box::new(curve)),
+            Err(error) => Curve::Missing { missing: error.to_string() },
+        }
     });
     let posterior = arguments.posterior.then(|| Posterior::of(found.comparison.preferred(), &found.decay)).transpose();
     // What was found is given out without one as well.
@@ -209,13 +183,15 @@ fn give_out(
         Err(error) => Some(error),
     };
     if arguments.output.json {
-        let friction_curve = found.curve.as_ref().map(Curve::of);
-        let document = Document { comparison: &found.comparison, friction_curve, posterior: &found.posterior };
-        print_json(&document)?;
+        print_json(&Document {
+            comparison: &found.comparison,
+            friction_curve: &found.curve,
+            posterior: &found.posterior,
+        })?;
     } else {
         let report = found.comparison.to_string();
         // The friction that the record shows, then the law that explains it.
-        let curve = found.curve.as_ref().map_or_else(String::new, |curve| format!("{}\n", Curve::of(curve).text()));
+        let curve = found.curve.as_ref().map_or_else(String::new, |curve| format!("{}\n", curve.text()));
         print(format_args!("{}\n{curve}{report}", found.origin))?;
         if let Some(posterior) = &found.posterior {
             print(posterior.text())?;

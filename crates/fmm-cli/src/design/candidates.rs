@@ -8,6 +8,8 @@ use fmm_model::{ModelError, Rounded};
 use fmm_record::{Quantity, Record};
 use serde::Deserialize;
 
+use crate::input::motion_called;
+
 /// A number, or one with its standard uncertainty.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged, expecting = "a number, or { value = …, u = … }")]
@@ -94,17 +96,9 @@ const MOST: usize = 10_000;
 
 impl OfSensor {
     fn sensor(&self, noise: f64) -> Result<PlannedSensor, Box<dyn Error>> {
-        let quantity = match self.quantity.as_str() {
-            "displacement" => Quantity::Displacement,
-            "velocity" => Quantity::Velocity,
-            "acceleration" => Quantity::Acceleration,
-            other => {
-                return Err(format!(
-                    "there is no sensor of {other:?}; there are displacement, velocity and acceleration"
-                )
-                .into());
-            }
-        };
+        let unknown =
+            format!("there is no sensor of {:?}; there are displacement, velocity and acceleration", self.quantity);
+        let quantity = motion_called(&self.quantity).ok_or(unknown)?;
         Ok(PlannedSensor::new(quantity, noise)?.with_gain_uncertainty(self.gain_u)?)
     }
 }

@@ -17,7 +17,7 @@ use fmm_record::Record;
 use crate::files;
 pub(crate) use question::{Held, Question};
 use source::BUNDLED;
-pub(crate) use source::{Choice, Input, is_motion, motion};
+pub(crate) use source::{Choice, Input, is_motion, motion, motion_called};
 
 /// File, channel, and measured quantity.
 #[derive(Debug, Args)]

@@ -64,18 +64,26 @@ pub(crate) struct Choice {
     pub(crate) is_drive: bool,
 }
 
-/// True for a quantity to which a law can be fitted, or that a response can have.
+/// Quantities to which a law can be fitted, or that a response can have, by their names.
+const MOTIONS: [(&str, Quantity); 3] = [
+    ("velocity", Quantity::Velocity),
+    ("displacement", Quantity::Displacement),
+    ("acceleration", Quantity::Acceleration),
+];
+
+/// True for a quantity of a motion.
 pub(crate) fn is_motion(quantity: Quantity) -> bool {
-    matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration)
+    MOTIONS.iter().any(|(_, motion)| *motion == quantity)
 }
 
 /// Quantity of a motion by its name.
+pub(crate) fn motion_called(name: &str) -> Option<Quantity> {
+    MOTIONS.iter().find(|(called, _)| *called == name).map(|(_, quantity)| *quantity)
+}
+
+/// Parser of the name of a motion.
 pub(crate) fn motion() -> impl TypedValueParser<Value = Quantity> {
-    PossibleValuesParser::new(["velocity", "displacement", "acceleration"]).map(|name| match name.as_str() {
-        "velocity" => Quantity::Velocity,
-        "displacement" => Quantity::Displacement,
-        _ => Quantity::Acceleration,
-    })
+    PossibleValuesParser::new(MOTIONS.map(|(name, _)| name)).map(|name| motion_called(&name).unwrap_or_default())
 }
 
 /// A bicycle fork that swings as a pendulum, for those who have no record at hand.

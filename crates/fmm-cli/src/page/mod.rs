@@ -1,5 +1,7 @@
 //! Pages: one file of HTML that needs no network, for a screen of any width, light or dark, and for paper.
 
+use fmm_model::Rounded;
+
 const STYLE: &str = include_str!("style.css");
 
 /// The page with this `title` (text) and `body` (HTML).
@@ -146,6 +148,16 @@ pub fn marked(text: &str) -> String {
         }
         html + &escaped(part)
     })
+}
+
+/// An interval to the digits of `rounded`; a side without an end is open, and an interval without either is `open`.
+pub(crate) fn interval(rounded: &Rounded, ends: (Option<f64>, Option<f64>), open: &str) -> String {
+    match ends {
+        (Some(low), Some(high)) => rounded.interval(low, high),
+        (Some(low), None) => format!("above {}", Rounded::new(low, None)),
+        (None, Some(high)) => format!("below {}", Rounded::new(high, None)),
+        (None, None) => open.to_owned(),
+    }
 }
 
 /// The name of a quantity as words, without the unit at its end, which stands beside it.

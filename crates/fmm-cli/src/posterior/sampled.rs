@@ -8,7 +8,7 @@ use fmm_model::Rounded;
 use serde::Serialize;
 
 use super::corner::corner;
-use crate::page::{bullets, cell, escaped, figure, optional_cell, row_heading, table, text_cell, words};
+use crate::page::{bullets, cell, escaped, figure, interval, optional_cell, row_heading, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -70,12 +70,7 @@ impl Posterior {
 fn row(marginal: &Marginal, intervals: &IntervalComparison) -> Vec<String> {
     let rounded = Rounded::new(marginal.mean(), Some(marginal.standard_deviation()));
     let both = |(low, high): (f64, f64)| rounded.interval(low, high);
-    let profile = intervals.profile().map(|ends| match ends {
-        (Some(low), Some(high)) => both((low, high)),
-        (Some(low), None) => format!("above {}", Rounded::new(low, None)),
-        (None, Some(high)) => format!("below {}", Rounded::new(high, None)),
-        (None, None) => "open".to_owned(),
-    });
+    let profile = intervals.profile().map(|ends| interval(&rounded, ends, "open"));
     let effective = marginal.bulk_effective_size().min(marginal.tail_effective_size());
     vec![
         row_heading(&words(intervals.name())),

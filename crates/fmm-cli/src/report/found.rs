@@ -4,9 +4,31 @@ use std::error::Error;
 
 use fmm_identify::{Comparison, Experiment, Finding, FrictionCurve, FrictionLevel};
 use fmm_record::{Record, Swings};
+use serde::Serialize;
 
 use crate::figure::{Panel, Role, label};
 use crate::posterior::Posterior;
+
+/// Friction over the speed without a law, or the reason why it cannot be had.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub(crate) enum Curve {
+    Found(Box<FrictionCurve>),
+    Missing { missing: String },
+}
+
+impl Curve {
+    /// Three numbers of the curve and what speaks against it, or why there is none.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Self::Found(curve) => {
+                let limits = curve.limits().iter().map(|limit| format!("; {limit}"));
+                std::iter::once(curve.headline()).chain(limits).chain([".".to_owned()]).collect()
+            }
+            Self::Missing { missing } => format!("friction over speed, no law assumed: none, as {missing}."),
+        }
+    }
+}
 
 /// A record, as it was prepared and fitted.
 pub(crate) struct Found {
@@ -14,8 +36,8 @@ pub(crate) struct Found {
     pub(crate) origin: String,
     pub(crate) decay: Experiment,
     pub(crate) comparison: Comparison,
-    /// Friction over the speed without a law, or why it cannot be had; `None` where laws are compared.
-    pub(crate) curve: Option<Result<FrictionCurve, String>>,
+    /// `None` where laws are compared.
+    pub(crate) curve: Option<Curve>,
     /// Of the preferred law, if that was asked for.
     pub(crate) posterior: Option<Posterior>,
 }
@@ -23,7 +45,7 @@ pub(crate) struct Found {
 impl Found {
     /// Friction over the speed with its intervals, and the preferred law in it; `None` without a curve.
     pub(crate) fn curve_panels(&self) -> Option<Vec<Panel>> {
-        let curve = self.curve.as_ref()?.as_ref().ok()?;
+        let Some(Curve::Found(curve)) = &self.curve else { return None };
         let speeds = curve.speeds();
         let levels = curve.levels();
         let quantity = if curve.unit() == "1" { "friction coefficient" } else { "friction" };

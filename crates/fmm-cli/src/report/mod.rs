@@ -13,7 +13,7 @@ use fmm_model::{Rounded, coverage_factor};
 use sha2::{Digest, Sha256};
 
 use self::budget::{budget, of_size};
-pub(crate) use self::found::{Found, Pictures};
+pub(crate) use self::found::{Curve, Found, Pictures};
 use self::profiles::profiles;
 use crate::backbone;
 use crate::figure::{Panel, Role, drawn, histogram, label};
@@ -101,8 +101,8 @@ fn findings(found: &Found) -> String {
 fn friction_curve(found: &Found) -> String {
     let content = match &found.curve {
         None => return String::new(),
-        Some(Err(reason)) => format!("<p>It cannot be had: {}.</p>\n", escaped(reason)),
-        Some(Ok(curve)) => {
+        Some(Curve::Missing { missing }) => format!("<p>It cannot be had: {}.</p>\n", escaped(missing)),
+        Some(Curve::Found(curve)) => {
             let sentences = std::iter::once(curve.headline()).chain(curve.limits().iter().map(ToString::to_string));
             let text = format!("<p>{}.</p>\n", escaped(&sentences.collect::<Vec<_>>().join("; ")));
             let caption = "Grey: friction over the speed, no law assumed, with its 95 % intervals at each speed. Dark: \

@@ -8,7 +8,7 @@ use fmm_model::Rounded;
 
 use super::{Found, LEVEL};
 use crate::figure::{Panel, Role, drawn, label};
-use crate::page::{bullets, figure, row_heading, table, text_cell, words};
+use crate::page::{bullets, figure, interval, row_heading, table, text_cell, words};
 
 /// Points of a parabola.
 const POINTS: usize = 200;
@@ -36,13 +36,18 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
         (false, false) => format!("All other intervals are symmetric within {within:.0} % of k u."),
     };
     let rows = bent.iter().map(|profile| {
-        let value = Rounded::new(profile.value(), reach(profile)).to_string();
+        let ((low, high), by_squares) = (profile.straight(), profile.interval());
+        let ends = (by_squares.lower().value(), by_squares.upper().value());
+        // The ends are rounded to half the width of the interval by value ± k u.
+        let reach = Some(0.25 * (high - low)).filter(|reach| *reach > 0.0);
+        let rounded = Rounded::new(profile.value(), reach);
+        let value = rounded.to_string();
         vec![
             row_heading(&words(profile.parameter().name())),
             text_cell(&value.split(" ± ").next().unwrap_or_default().replace('(', "")),
             text_cell(profile.parameter().unit()),
-            text_cell(&straight_text(profile)),
-            text_cell(&profile_text(profile)),
+            text_cell(&rounded.interval(low, high)),
+            text_cell(&interval(&rounded, ends, "no end on either side")),
             text_cell(&misleads(profile)),
         ]
     });
@@ -59,28 +64,6 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
         Profiles::MOST_EVALUATIONS,
         figures.collect::<Vec<_>>().concat()
     ))
-}
-
-/// Half the width of the interval by value ± k u, to which its ends are rounded.
-fn reach(profile: &Profile) -> Option<f64> {
-    let (low, high) = profile.straight();
-    Some(0.25 * (high - low)).filter(|reach| *reach > 0.0)
-}
-
-fn straight_text(profile: &Profile) -> String {
-    let (low, high) = profile.straight();
-    Rounded::new(profile.value(), reach(profile)).interval(low, high)
-}
-
-/// The interval by the profile; an open side has no end.
-fn profile_text(profile: &Profile) -> String {
-    let (lower, upper) = (profile.interval().lower(), profile.interval().upper());
-    match (lower.value(), upper.value()) {
-        (Some(low), Some(high)) => Rounded::new(profile.value(), reach(profile)).interval(low, high),
-        (Some(low), None) => format!("above {}", Rounded::new(low, None)),
-        (None, Some(high)) => format!("below {}", Rounded::new(high, None)),
-        (None, None) => "no end on either side".to_owned(),
-    }
 }
 
 /// Result of a profile in words.

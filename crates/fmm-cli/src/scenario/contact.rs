@@ -1,5 +1,6 @@
 //! A law whose type is known only at run time, with the engines that take it.
 
+use std::fmt;
 use std::rc::Rc;
 
 use fmm_friction::{BristleLaw, LawVisitor, PiecewiseLinearLaw, Regime, SlidingLaw};
@@ -8,9 +9,41 @@ use fmm_sim::{
     Bristle, Engine, Exact, Excitation, Moreau, RungeKutta, Sampling, Scenario, SimulationError, State, Thesis,
     Trajectory,
 };
+use serde::{Deserialize, Serialize};
 
-use super::EngineName;
-use super::engine::Choice;
+/// The engines that a scenario can name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum EngineName {
+    /// The one that suits law and machine.
+    #[default]
+    Auto,
+    /// Closed form between events.
+    Exact,
+    /// Any law of the sliding speed, to a tolerance.
+    RungeKutta,
+    /// Any law with an internal state, to a tolerance.
+    Bristle,
+    /// The thesis' semi-implicit Euler, one step a sample.
+    Thesis,
+    /// Time stepping of the set-valued law, one step a sample.
+    Moreau,
+}
+
+/// The name in a file.
+impl fmt::Display for EngineName {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(f)
+    }
+}
+
+/// An engine and how accurate it shall be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Choice {
+    pub(crate) engine: EngineName,
+    /// Relative tolerance (1); none for the engine's own.
+    pub(crate) tolerance: Option<f64>,
+}
 
 /// Everything about a scenario but the law.
 #[derive(Debug, Clone)]

@@ -8,7 +8,6 @@
 
 mod catalogue;
 mod contact;
-mod engine;
 mod entries;
 mod file;
 mod keys;
@@ -20,7 +19,7 @@ mod run;
 mod tests;
 
 pub(crate) use catalogue::{Entry, laws};
-pub(crate) use engine::EngineName;
+pub(crate) use contact::EngineName;
 pub(crate) use entries::{Entries, Field};
 pub(crate) use keys::Slot;
 pub(crate) use law::given_twice;

@@ -6,8 +6,7 @@ use fmm_model::Restoring;
 use fmm_sim::State;
 
 use super::catalogue::contact;
-use super::contact::{Contact, Setting};
-use super::engine::Choice;
+use super::contact::{Choice, Contact, Setting};
 use super::entries::{Entries, Field};
 use super::file::{Drive, File};
 use super::{EngineName, Motion, Plan};
