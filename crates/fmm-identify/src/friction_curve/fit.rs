@@ -56,7 +56,7 @@ pub(super) struct Levelled<'a> {
 }
 
 impl<'a> Levelled<'a> {
-    /// That of `experiments` on `machine`, with these terms beside the levels.
+    /// The problem of `experiments` on `machine`, with these terms beside the levels.
     pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &'a [Experiment]) -> Result<Self, IdentifyError> {
         let simple = Problem::of(&Candidate::of::<CoulombViscous>().with(beside.clone()), *machine, experiments)?;
         let options = Options::default();

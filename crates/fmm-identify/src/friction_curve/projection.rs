@@ -23,8 +23,8 @@ use crate::quantities::table::Table;
 /// D(θ) = (b(θ) − b̂)ᵀ Λ (b(θ) − b̂)
 /// ```
 ///
-/// b(θ) are the levels of a law, b̂ those that fit best, Λ their precision with all else integrated out. D is the misfit
-/// of the law beside the best curve of all, as a fit to the records would have it, without a simulation.
+/// b(θ) are the levels of a law, b̂ those that fit best, Λ their precision with all else integrated out. D is the
+/// misfit of the law beside the best curve of all, as a fit to the records would have it, without a simulation.
 pub(crate) struct ShownFriction {
     top: f64,
     /// Names of all parameters of the curve's problem, and the first level among them.
@@ -67,8 +67,8 @@ impl ShownFriction {
     }
 
     /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction
-    /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name, or for a
-    /// law with internal state one of several values.
+    /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name, or
+    /// for a law with internal state one of several values.
     pub(crate) fn starts(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
         /// Difference of misfits that makes none (1).
         const EVEN: f64 = 1.0;
@@ -138,8 +138,8 @@ impl ShownFriction {
     }
 }
 
-/// Friction of the law of a `table` by fitted `values`, with the damping beside it, at a `speed` that grows or, if it is
-/// `losing`, falls, in the unit of its forces; `None` for a law that states none.
+/// Friction of the law of a `table` by fitted `values`, with the damping beside it, at a `speed` that grows or, if it
+/// is `losing`, falls, in the unit of its forces; `None` for a law that states none.
 pub(super) fn friction(table: &Table, values: &[f64], speed: f64, losing: bool) -> Option<f64> {
     let beside = |term: Term| table.terms.place(term).map_or(0.0, |place| values[table.oscillator + place]);
     let further = beside(Term::QuadraticDamping) + beside(Term::CubicDamping) * speed;
@@ -224,8 +224,8 @@ mod tests {
     use super::*;
     use crate::experiment::Preparation;
 
-    /// Friction of 0.3 m/s² that is 0.1 m/s² larger at rest and falls over 0.05 m/s: its own law begins close to it, and
-    /// a straight line is excluded.
+    /// Friction of 0.3 m/s² that is 0.1 m/s² larger at rest and falls over 0.05 m/s: its own law begins close to it,
+    /// and a straight line is excluded.
     #[test]
     fn a_law_begins_on_the_friction_that_the_record_shows() {
         let law = Stribeck::new(0.3, 0.4, 0.05, 2.0, 0.2).unwrap();

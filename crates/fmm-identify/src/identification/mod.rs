@@ -275,8 +275,9 @@ impl Identification {
             && self.pull_at_bound.is_some_and(|pull| pull < -SIGNIFICANT_FALL)
     }
 
-    /// Linear damping per mass at a `share` of the critical one, over √(2π) of its standard uncertainty (1): the evidence
-    /// against damping that may be anywhere below, over that at its best value. `None` where it has no uncertainty.
+    /// Linear damping per mass at a `share` of the critical one, over √(2π) of its standard uncertainty (1): the
+    /// evidence against damping that may be anywhere below, over that at its best value. `None` where it has no
+    /// uncertainty.
     pub(crate) fn range_of_damping(&self, share: f64) -> Option<f64> {
         let of = |name: &str| self.findings().iter().find(|finding| finding.parameter().name() == name);
         let u = of(LINEAR)?.uncertainty().filter(|u| *u > 0.0)?;

@@ -156,8 +156,8 @@ impl Judgement {
     /// −2 ln w = D − D_p + (k − k_p) ln n,     for damping alone   D − D_p + 2 ln (4π ζ f₀/√(2π) u(c/m))
     /// ```
     ///
-    /// The first is Schwarz' criterion for n independent residuals. The second is the ratio of evidences if a machine may
-    /// have any damping up to a share ζ of the critical one: the less a record tells of it, the more it has to be
+    /// The first is Schwarz' criterion for n independent residuals. The second is the ratio of evidences if a machine
+    /// may have any damping up to a share ζ of the critical one: the less a record tells of it, the more it has to be
     /// allowed for.
     pub(crate) fn weights(&self, candidates: &[Candidate], identifications: &[Identification]) -> Vec<f64> {
         let preferred = &identifications[self.preferred];

@@ -64,8 +64,9 @@ pub(crate) const SEEN_PRESLIDING: f64 = 2.0;
 /// fitted (1). Origin: a law that is left has less than 20 by its fit; chosen above.
 pub(crate) const ALLOWED: f64 = 30.0;
 
-/// Share of the misfit of Coulomb and viscous friction by which those of other laws may be wrong before they are fitted
-/// (1). Origin: chosen; a law that rises within the first two levels, as regularised ones do, has 0.21 where it is true.
+/// Share of the misfit of Coulomb and viscous friction by which those of other laws may be wrong before they are
+/// fitted (1). Origin: chosen; a law that rises within the first two levels, as regularised ones do, has 0.21 where
+/// it is true.
 pub(crate) const INEXACT: f64 = 0.3;
 
 /// Iterations of a fit that begins on the friction over the speed (1). Origin: those that end take 5 to 30; one that
@@ -97,8 +98,8 @@ pub(crate) const SHOWN_CHANGE: f64 = 3.0;
 /// on one side.
 pub(crate) const REACH_OF_CHANGE: f64 = 2.0;
 
-/// Standard uncertainties above which a change is fitted, and its misfit decides (1). Origin: one in 22 on two sides; of changes of
-/// three uncertainties five in six reach it.
+/// Standard uncertainties above which a change is fitted, and its misfit decides (1). Origin: one in 22 on two sides;
+/// of changes of three uncertainties five in six reach it.
 pub(crate) const ASKED_CHANGE: f64 = 2.0;
 
 /// Order of the filter of a sensor that is tried (1). Origin: most sensors with a filter have one of second order.

@@ -33,12 +33,12 @@ impl Inquiry<'_> {
     /// The comparison of as many laws as vibrations ask for.
     ///
     /// First viscous damping, Coulomb friction and both. If a score test of these is significant, or their residuals
-    /// are correlated: the laws of the catalogue that the friction over the speed allows, which the records show without
-    /// a law, each begun where it follows that friction best; springs that harden, soften, meet a stop or have a gap if
-    /// there is a sign of one; and laws with presliding if there is a sign of it. The tests are in
+    /// are correlated: the laws of the catalogue that the friction over the speed allows, which the records show
+    /// without a law, each begun where it follows that friction best; springs that harden, soften, meet a stop or
+    /// have a gap if there is a sign of one; and laws with presliding if there is a sign of it. The tests are in
     /// [`Comparison::score_tests`], the laws that are excluded without a fit in [`Comparison::excluded`]. Laws that
-    /// cannot be fitted to the end, and that are then far from others, are left out; a warning names them, and one each
-    /// law that cannot be fitted at all.
+    /// cannot be fitted to the end, and that are then far from others, are left out; a warning names them, and one
+    /// each law that cannot be fitted at all.
     ///
     /// # Errors
     /// Those of [`identify`](crate::identify), for a parameter that no law has, and for forces along motions.
@@ -188,12 +188,12 @@ fn preslides(found: &Identification) -> bool {
     found.finding("contact_stiffness_per_mass").is_some()
 }
 
-/// Beginning of the fits of a search.
+/// Start of the fits of a search.
 #[derive(Clone, Copy)]
 enum From<'a> {
-    /// Where the records say: the fits without which there is no search.
+    /// Values that the records show, of the fits without which there is no search.
     Records,
-    /// The same for further fits.
+    /// The same of further fits.
     Further,
     /// On the friction over the speed that they show, and where `others` have ended.
     Friction { shown: &'a ShownFriction, others: &'a [&'a Fitted] },
@@ -255,8 +255,8 @@ impl Run<'_, '_> {
         Ok(found)
     }
 
-    /// Adds fits by the laws that the friction over the speed allows; then, where more is asked for, by springs that are
-    /// not linear and by laws with presliding. A simple law `changes` if its friction changes during the records.
+    /// Adds fits by the laws that the friction over the speed allows; then, where more is asked for, by springs that
+    /// are not linear and by laws with presliding. A simple law `changes` if its friction changes during the records.
     fn fit_further(&self, found: &mut Found, tests: &[ScoreTest], changes: bool) -> Result<(), IdentifyError> {
         let limited = |most: usize| {
             let options = &self.inquiry.options;

@@ -181,8 +181,8 @@ impl Problem<'_> {
         starts
     }
 
-    /// Start values near a fit of `simple`: its losses, put into the law in as many ways as it offers, and friction that
-    /// falls with the speed over some share of the largest one.
+    /// Start values near a fit of `simple`: its losses, put into the law in as many ways as it offers, and friction
+    /// that falls with the speed over some share of the largest one.
     pub(crate) fn near(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         if self.table.oscillator != simple.table.oscillator || !self.is_elaborate() {
             return self.starts();

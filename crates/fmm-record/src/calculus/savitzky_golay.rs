@@ -6,7 +6,8 @@ use crate::error::RecordError;
 /// Highest degree: beyond it the polynomials follow noise, and their products lose the digits of a double.
 const HIGHEST_DEGREE: usize = 8;
 
-/// The value or the slope at each sample of the polynomials of `degree` that are fitted by least squares to `span` samples.
+/// The value or the slope at each sample of the polynomials of `degree` that are fitted by least squares to `span`
+/// samples.
 pub(super) fn sliding(
     values: &[f64],
     span: usize,

@@ -101,8 +101,8 @@ impl Rest {
             .map(|index| (index, side(values[index])))
     }
 
-    /// The first extremum after the departure and its distance from the level, from which the values return by more than the band, a tenth of the
-    /// way there, and `ripple`.
+    /// The first extremum after the departure and its distance from the level, from which the values return by more
+    /// than the band, a tenth of the way there, and `ripple`.
     fn extremum(&self, values: &[f64], (left, side): (usize, f64), ripple: f64) -> (usize, f64) {
         let (mut place, mut height) = (left, 0.0);
         for (index, value) in values.iter().enumerate().skip(left) {

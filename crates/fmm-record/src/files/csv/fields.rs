@@ -103,7 +103,8 @@ impl<'a> Row<'a> {
     }
 }
 
-/// The number in `field`, if it is one, and its decimal mark, if it has one. A decimal comma counts only where commas do not separate columns.
+/// The number in `field`, if it is one, and its decimal mark, if it has one. A decimal comma counts only where commas
+/// do not separate columns.
 pub(super) fn number(field: &[u8], separator: Separator) -> Option<(f64, Option<char>)> {
     let text = std::str::from_utf8(field).ok()?;
     if let Ok(value) = text.parse::<f64>() {

@@ -131,8 +131,8 @@ fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
     Err(RecordError::options(what))
 }
 
-/// The whole number before the comma of a number with at most one comma and no point, and true if it cannot be two whole
-/// numbers as programs write them.
+/// The whole number before the comma of a number with at most one comma and no point, and true if it cannot be two
+/// whole numbers as programs write them.
 fn before_comma(text: &[u8]) -> Option<(i64, bool)> {
     let text = std::str::from_utf8(text).ok()?;
     let (before, after) = text.split_once(',').map_or((text, None), |(before, after)| (before, Some(after)));
