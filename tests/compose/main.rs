@@ -1,6 +1,7 @@
 //! The crates together: real records, synthetic ones of known truth, and records that should be refused.
 
 mod backbone;
+mod backbone_coverage;
 mod bad_input;
 mod brake;
 mod change;

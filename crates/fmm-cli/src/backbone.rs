@@ -85,7 +85,7 @@ fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &
     lines.push(format!("amplitudes in {}", record.unit()));
     lines.push(String::new());
     lines.push(format!(
-        "Backbone, windows of {:.4} s; no point lies within half of one of the ends of the record",
+        "Backbone, windows of {:.4} s; none reaches beyond an end of the record or to a stop",
         backbone.window()
     ));
     lines.push(format!("  {:>9}   {:<22}   {:<24}   c/m / (1/s)", "time / s", label("A", backbone.unit()), "f / Hz"));
@@ -100,10 +100,12 @@ fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &
     for (term, name) in backbone.spring().iter().zip(["f0 / Hz", "k3", "k5"]) {
         lines.push(format!("  {name} = {term}"));
     }
-    lines.push(format!(
-        "fit it, and others beside it, by: fmm identify --law \"{}\"; the suggestion does not judge",
-        suggestion.model()
-    ));
+    if !suggestion.damping.is_empty() {
+        lines.push(format!(
+            "fit it, and others beside it, by: fmm identify --law \"{}\"; the suggestion does not judge",
+            suggestion.model()
+        ));
+    }
     lines.join("\n")
 }
 
@@ -150,6 +152,8 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
         "suggestion": {
             "model": suggestion.model(),
             "damping": damping,
+            "not_excluded": suggestion.others,
+            "falls": suggestion.falls,
             "spring_u": suggestion.spring.iter().map(|term| pair(*term)).collect::<Vec<_>>(),
         },
     })

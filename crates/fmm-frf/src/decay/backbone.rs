@@ -9,7 +9,7 @@ use crate::decay::half_cycles::{FEWEST_HALF_CYCLES, half_cycle_points};
 use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
 use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::spring::{bend, spring_terms};
-use crate::decay::suggestion::Suggestion;
+use crate::decay::suggestion::{Explanation, Suggestion};
 use crate::error::FrfError;
 
 /// Options of a backbone.
@@ -64,10 +64,59 @@ pub struct BackbonePoint {
     pub time: f64,
     /// A, of the displacement (m, or the unit of the record times a power of s).
     pub amplitude: Estimated,
-    /// f (Hz).
+    /// f (Hz), of the spring: without the effect of the loss on the period.
     pub frequency: Estimated,
     /// c_eq/m, the viscous damping that takes as much from the amplitude (1/s).
     pub damping: Estimated,
+}
+
+/// Share of a correction that is added to the uncertainty, for terms of higher order (1).
+const HIGHER_ORDERS: f64 = 0.15;
+/// Relative uncertainty of damping and frequency by terms of second order, over (c/ω)² (1).
+const SECOND_ORDER: (f64, f64) = (0.15, 0.04);
+
+/// Point as measured, on a straight spring.
+pub(crate) struct Row {
+    pub(crate) point: BackbonePoint,
+    /// Twice the factor of the second derivative of a rate, in that rate as measured (s²).
+    pub(crate) reach: f64,
+    /// Factor of n in the frequency 1 − (1 + lag n)/8 (c/ω)² as measured over that of the spring.
+    pub(crate) lag: f64,
+    /// Number of times that the displacement was differentiated.
+    pub(crate) orders: f64,
+    /// Twice the part of the amplitude as measured that higher multiples make, over the bend of the spring.
+    pub(crate) harmonic: f64,
+}
+
+impl Row {
+    /// The point on a `spring`, without what a loss c_eq ~ Aⁿ changes within its window.
+    ///
+    /// ```text
+    /// c + c″ reach/6,    c″ = ½ q c³,             q = ½ (n² + d²c/(c d ln A²))
+    /// ω + ω″ reach/6,    ω″ = ¼ (2 + n) c² dω/d ln A
+    /// ```
+    ///
+    /// The action, not the square of the amplitude, decays with c/m, and a derivative does not go with the amplitude.
+    fn unbiased(&self, [power, second]: [Estimated; 2], spring: &[Estimated]) -> BackbonePoint {
+        let mut point = self.point;
+        let (n, u, c, f) = (power.value, power.uncertainty, point.damping.value, point.frequency.value);
+        let (lost, curved) = ((c / (TAU * f)).powi(2), self.reach * c * c / 12.0);
+        let bend = bend(spring, point.amplitude.value);
+        let window = second.scaled(curved);
+        let of_spring = (1.0 + 0.5 * bend) / (1.0 + (self.orders + self.harmonic) * bend);
+        let factor = if of_spring > 0.0 { of_spring } else { 1.0 } / (1.0 + window.value);
+        let of_window = window.uncertainty.hypot(HIGHER_ORDERS * window.value);
+        point.amplitude = point.amplitude.scaled(1.0 - 0.5 * self.harmonic * bend);
+        let u_damping = point.damping.uncertainty.hypot(c * of_window.hypot(SECOND_ORDER.0 * lost));
+        point.damping = Estimated::new(c, u_damping).scaled(factor);
+        let mut change = |by: f64, u: f64| {
+            point.frequency.value += f * by;
+            point.frequency.uncertainty = point.frequency.uncertainty.hypot(f * u.hypot(HIGHER_ORDERS * by));
+        };
+        change((1.0 + self.lag * n) / 8.0 * lost, lost * SECOND_ORDER.1.hypot(self.lag * u / 8.0));
+        change(-0.5 * (2.0 + n) * bend * curved, 0.5 * u * bend * curved);
+        point
+    }
 }
 
 /// Frequency and equivalent damping of one mode against its amplitude, with standard uncertainties.
@@ -82,10 +131,19 @@ pub struct BackbonePoint {
 ///
 /// J is the action, which viscous damping lets decay with c/m on any spring. The dependence of ω on A is that of a
 /// spring k (x + k₃ x³ + k₅ x⁵) fitted to the points; on a linear spring ω' is zero. A is the amplitude of the first
-/// harmonic. Uncertainties hold for white noise.
+/// harmonic.
 ///
-/// In a displacement or velocity of fewer than seven cycles, half cycles make the points instead, unless a mode or a
-/// window is asked for. Sines are then fitted to turning points and passages through the centre.
+/// In a displacement or velocity of fewer than seven cycles before its stop, half cycles make the points instead,
+/// unless a mode or a window is asked for. Sines are then fitted to turning points and passages through the centre.
+/// Windows are left out if they reach to a stop or to the last cycle before it.
+///
+/// The effect of a loss c_eq ~ Aⁿ on a window is taken out, with n from the sums of terms that the points do not
+/// exclude: damping as measured is larger by n² c³ t²/12 at a reach t, and the frequency smaller by (1 + λ n)/8 (c/ω)²,
+/// λ = −2 for a displacement, 0 for a velocity. Uncertainties contain white noise, the uncertainty of n and higher
+/// orders; where neighbouring points scatter more about the best terms, as by coloured noise, they are raised to this.
+///
+/// In 280 simulated records of 8 to 40 half cycles with noise of 0.05 % to 2 %, viscous, dry, falling, quadratic and on
+/// curved springs, 1.9 % of the frequencies and 2.8 % of the dampings were off by more than twice their uncertainty.
 ///
 /// Errors without noise: in simulated decays by Coulomb friction, quadratic damping, a spring that hardens by 20 % and
 /// a pendulum of 0.6 rad, frequency and damping are within 6e-4 of the closed forms. For two modes 5 % apart, one with
@@ -147,6 +205,8 @@ const SLIP: f64 = 0.3;
 const WANTED: f64 = 0.2;
 /// The share of the greatest amplitude from which on a decay has begun (1).
 const GREATEST: f64 = 0.99;
+/// Rounds until loss, spring and points agree.
+const ROUNDS: usize = 3;
 /// Regressions until the carrier of a window is where its vibration is.
 const SETTLING: usize = 2;
 
@@ -163,13 +223,15 @@ impl Backbone {
             _ => 0,
         };
         let prepared = Prepared::of(record, options);
-        let is_long = prepared.as_ref().is_ok_and(|prepared| prepared.frequency * record.duration() >= FEW_CYCLES);
         let is_free = *options == BackboneOptions::default();
+        let stop = if options.frequency.is_none() { stop(record) } else { f64::INFINITY };
+        let moving = record.duration().min(stop - record.start());
+        let is_long = prepared.as_ref().is_ok_and(|prepared| prepared.frequency * moving >= FEW_CYCLES);
         let by_half_cycles = || {
-            let points = half_cycle_points(record);
-            let [first, .., last] = points.as_slice() else { return None };
-            let window = HALF_CYCLES / f64::midpoint(first.frequency.value, last.frequency.value);
-            Some(Self::corrected(points, window, record, orders))
+            let rows = half_cycle_points(record);
+            let [first, .., last] = rows.as_slice() else { return None };
+            let window = HALF_CYCLES / f64::midpoint(first.point.frequency.value, last.point.frequency.value);
+            Some(Self::corrected(&rows, window, record, orders))
         };
         if is_free
             && !is_long
@@ -177,15 +239,15 @@ impl Backbone {
         {
             return Ok(found);
         }
-        prepared.and_then(|prepared| Self::by_windows(record, prepared, orders)).or_else(|error| {
+        prepared.and_then(|prepared| Self::by_windows(record, prepared, orders, stop)).or_else(|error| {
             // A machine that rests after a few cycles has a long record all the same.
             let found = if is_free && is_long { by_half_cycles() } else { None };
             found.ok_or_else(|| too_few_half_cycles(record, options).unwrap_or(error))
         })
     }
 
-    /// The points of windows on a record.
-    fn by_windows(record: &Record, prepared: Prepared<'_>, orders: i32) -> Result<Self, FrfError> {
+    /// The points of windows on a record, which end a cycle before its `stop` (s).
+    fn by_windows(record: &Record, prepared: Prepared<'_>, orders: i32, stop: f64) -> Result<Self, FrfError> {
         let Prepared { taken, frequency, fixed } = prepared;
         let (half, values) = (taken.half, taken.values);
         let centres = (half..values.len() - half).step_by((half / 2).max(1));
@@ -209,30 +271,41 @@ impl Backbone {
             }
         }
         // On a straight spring.
-        let point = |local: Local| BackbonePoint {
-            time: record.time(local.centre),
-            amplitude: local.amplitude.scaled(1.0 / (TAU * local.frequency.value).powi(orders)),
-            frequency: local.frequency,
-            damping: local.rate.scaled(2.0),
+        let row = |local: Local| Row {
+            point: BackbonePoint {
+                time: record.time(local.centre),
+                amplitude: local.amplitude.scaled(1.0 / (TAU * local.frequency.value).powi(orders)),
+                frequency: local.frequency,
+                damping: local.rate.scaled(2.0),
+            },
+            reach: fixed.third_in_first * (half as f64 * record.interval()).powi(2),
+            lag: f64::from(2 * orders - 2),
+            orders: f64::from(orders),
+            harmonic: 0.0,
         };
-        let points: Vec<BackbonePoint> = decaying(&locals, half).into_iter().map(point).collect();
-        if points.is_empty() {
+        let before = |row: &Row| row.point.time + half as f64 * record.interval() < stop - 1.0 / frequency;
+        let rows: Vec<Row> = decaying(&locals, half).into_iter().map(row).filter(before).collect();
+        if rows.is_empty() {
             return Err(no_fit("no window lies between the greatest amplitude and the end of the decay"));
         }
-        Ok(Self::corrected(points, 2.0 * half as f64 * record.interval(), record, orders))
+        Ok(Self::corrected(&rows, 2.0 * half as f64 * record.interval(), record, orders))
     }
 
-    /// With the spring that `points` on a straight spring show.
-    fn corrected(mut points: Vec<BackbonePoint>, window: f64, record: &Record, orders: i32) -> Self {
-        let spring = spring_terms(&points);
-        // On a spring with terms k₃ and k₅ the action, not the square of the amplitude, decays with c/m, and a
-        // derivative of this many orders does not go with the amplitude.
-        for point in &mut points {
-            let bend = bend(&spring, point.amplitude.value);
-            let factor = (1.0 + 0.5 * bend) / (1.0 + f64::from(orders) * bend);
-            if factor > 0.0 {
-                point.damping = point.damping.scaled(factor);
+    /// Points of `rows` without the bias of their windows, with the spring that they show.
+    fn corrected(rows: &[Row], window: f64, record: &Record, orders: i32) -> Self {
+        let mut points: Vec<BackbonePoint> = rows.iter().map(|row| row.point).collect();
+        let (mut spring, mut scales) = (Vec::new(), [1.0; 2]);
+        for _ in 0..ROUNDS {
+            let (explanations, of_damping) = Explanation::all(&points);
+            for (point, row) in points.iter_mut().zip(rows) {
+                *point = row.unbiased(Explanation::powers(&explanations, point), &spring);
             }
+            let (found, of_frequency) = spring_terms(&points);
+            (spring, scales) = (found, [of_damping, of_frequency]);
+        }
+        for point in &mut points {
+            point.damping.uncertainty *= scales[0].sqrt();
+            point.frequency.uncertainty *= scales[1].sqrt();
         }
         let power = Unit::of(record.unit()).times(&Unit::of("s").power(orders));
         Self { points, window, unit: power.to_string(), spring, orders }
@@ -269,6 +342,15 @@ impl Backbone {
     pub fn suggestion(&self) -> Suggestion {
         Suggestion::of(&self.points, &self.spring)
     }
+}
+
+/// Time at which the motion ends, if each half cycle loses as much as the last ones; infinity if they lose nothing.
+fn stop(record: &Record) -> f64 {
+    let swings = Swings::of(record);
+    let [.., first, second, third, last] = swings.peaks() else { return f64::INFINITY };
+    let (before, after) = ((second.value - first.value).abs(), (last.value - third.value).abs());
+    let per_second = (before - after) / (third.time - first.time);
+    if per_second > 0.0 { 0.5 * (third.time + last.time) + after / per_second } else { f64::INFINITY }
 }
 
 fn no_fit(what: impl Into<String>) -> FrfError {

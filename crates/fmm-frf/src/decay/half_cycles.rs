@@ -5,32 +5,34 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use fmm_model::Estimated;
 use fmm_record::{Peak, Quantity, Record, Swings, noise, quantisation_step};
 
-use crate::decay::backbone::BackbonePoint;
+use crate::decay::backbone::{BackbonePoint, Row};
 
 /// Amplitudes that a point needs: of three half cycles in a row, the first and the last are compared.
 const COMPARED: usize = 3;
 /// Half cycles that two points need: one more than amplitudes.
 pub(crate) const FEWEST_HALF_CYCLES: usize = COMPARED + 2;
-/// Deviation of a passage, against that of the mean of the samples it is fitted to: its centre comes from four turning
-/// points with weights 1, 3, 3, 1, two of which the next passage but one has as well, √(1 + ½ 28/64 · 1.5²).
-const PASSAGE: f64 = 1.222;
+/// Deviation of a passage of a displacement and of a velocity, against that of the mean of the samples it is fitted to.
+/// The centre comes from four turning points with weights 1, 3, 3, 1, two of which the next passage but one has as
+/// well, √(1 + ½ 28/64 · 1.5²). The kink of a velocity is fitted beside, which makes the passage twice as uncertain,
+/// √(4 + ½ 28/64 · 1.5²).
+const PASSAGE: (f64, f64) = (1.222, 2.12);
 
-/// The points of a decay from its turning points and passages through the centre, for one of displacement or velocity.
+/// Rows of a decay from its turning points and passages through the centre, for one of displacement or velocity.
 ///
 /// ```text
 /// A_j = |e_{j+1} − e_j|/2          amplitude between two turning points e: no offset
-/// c_eq/m = 2 ln(A_j/A_{j+2})/T,    T from passage j to passage j + 2, at the amplitude √(A_j A_{j+2})
+/// c_eq/m = 2 ln(A_j/A_{j+2})/T,    T from passage j to passage j + 2, at the amplitude A_{j+1}
 /// ```
 ///
-/// For viscous damping on a straight spring both are exact; dry friction F/k = d gives 0.67 (d/A)² too little. Damping
-/// is not yet corrected for the spring.
-pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
+/// For viscous damping on a straight spring both are exact.
+pub(crate) fn half_cycle_points(record: &Record) -> Vec<Row> {
     let orders = match record.quantity() {
         Quantity::Displacement => 0,
         Quantity::Velocity => 1,
         // An acceleration jumps where dry friction reverses, which is where it turns.
         _ => return Vec::new(),
     };
+    let passage = if orders == 1 { PASSAGE.1 } else { PASSAGE.0 };
     let swings = Swings::of(record);
     let (peaks, crossings) = (swings.peaks(), swings.crossings());
     let Some(frequency) = swings.frequency() else { return Vec::new() };
@@ -40,6 +42,11 @@ pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
     let u_amplitude = FRAC_1_SQRT_2 * Peak::standard_uncertainty(white, samples_per_period);
     let mean = white / Swings::samples_per_point(samples_per_period).sqrt();
     let amplitude = |j: usize| 0.5 * (peaks[j + 1].value - peaks[j].value).abs();
+    // Beside the first and the last passage lie three turning points, whose centre a changing loss shifts.
+    let last = crossings.len().saturating_sub(1);
+    let is_end = |j: usize| j == 0 || j == last;
+    let inner = |j: usize| crossings[j.max(1).min(last - 1)].centre;
+    let u_centre = |j: usize| if is_end(j) { crossings[j].centre - inner(j) } else { 0.0 };
     let count = crossings.len().min(peaks.len().saturating_sub(1));
     (0..(count + 1).saturating_sub(COMPARED))
         .filter_map(|j| {
@@ -49,16 +56,19 @@ pub(crate) fn half_cycle_points(record: &Record) -> Vec<BackbonePoint> {
                 return None;
             }
             let frequency = 1.0 / period;
-            let u_time = |amplitude: f64| PASSAGE * mean / (TAU * frequency * amplitude);
+            let u_time = |j: usize| (passage * mean).hypot(u_centre(j)) / (TAU * frequency * amplitude(j));
             let of_damping = (u_amplitude / first).hypot(u_amplitude / last);
-            let middle = (first * last).sqrt();
-            let seen = Estimated::new(middle, 0.5 * middle * of_damping);
-            Some(BackbonePoint {
+            let seen = Estimated::new(amplitude(j + 1), u_amplitude);
+            let point = BackbonePoint {
                 time: f64::midpoint(crossings[j].time, crossings[j + 2].time),
                 amplitude: seen.scaled((TAU * frequency).powi(-orders)),
-                frequency: Estimated::new(frequency, frequency * frequency * u_time(first).hypot(u_time(last))),
+                frequency: Estimated::new(frequency, frequency * frequency * u_time(j).hypot(u_time(j + 2))),
                 damping: Estimated::new((first / last).ln(), of_damping).scaled(2.0 * frequency),
-            })
+            };
+            // A velocity passes its centre where the motion turns. The third multiple on a curved spring, 1/24 of its
+            // bend in a displacement, is three times as large in a velocity, and has the other sign at its peaks.
+            let (lag, harmonic) = if orders == 1 { (1.0, -0.25) } else { (-2.0, 1.0 / 12.0) };
+            Some(Row { point, reach: 0.25 * period * period, lag, orders: f64::from(orders), harmonic })
         })
         .collect()
 }

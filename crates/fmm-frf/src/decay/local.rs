@@ -28,7 +28,7 @@ pub(crate) struct LocalRegression {
     covariance: Vec<Vec<f64>>,
     weights: Vec<f64>,
     /// Share of a third power of the envelope that its first power takes, Σ w u⁴/Σ w u².
-    third_in_first: f64,
+    pub(crate) third_in_first: f64,
 }
 
 /// Rounds until the third power of an envelope is that of its own first two.
