@@ -126,6 +126,11 @@ impl Finding {
         self.variance().map(f64::sqrt)
     }
 
+    /// u, or of a value on its bound the one that it would have without the bound, in the unit of the parameter.
+    pub(crate) fn unbounded_uncertainty(&self) -> Option<f64> {
+        self.uncertainty().or(self.at_bound)
+    }
+
     fn variance(&self) -> Option<f64> {
         self.parts.as_ref().map(|parts| parts.iter().map(|(_, variance)| variance).sum())
     }

@@ -280,7 +280,7 @@ impl Identification {
     /// uncertainty.
     pub(crate) fn range_of_damping(&self, share: f64) -> Option<f64> {
         let of = |name: &str| self.findings().iter().find(|finding| finding.parameter().name() == name);
-        let u = of(LINEAR)?.uncertainty().filter(|u| *u > 0.0)?;
+        let u = of(LINEAR)?.unbounded_uncertainty().filter(|u| *u > 0.0)?;
         Some(4.0 * PI * share * of("natural_frequency_hz")?.value() / ((2.0 * PI).sqrt() * u))
     }
 

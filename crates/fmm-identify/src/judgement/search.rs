@@ -56,12 +56,12 @@ impl Inquiry<'_> {
         if !self.held.is_empty() {
             self.require_known(decays)?;
         }
-        let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, From::Records)?;
+        let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, Start::Records)?;
         let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
         let mut decays = decays;
         if let Some(drifting) = &drifting {
             let with_drift =
-                Run { decays: drifting, ..run }.fit(run.candidates(self.at(SearchStage::Simple))?, From::Records)?;
+                Run { decays: drifting, ..run }.fit(run.candidates(self.at(SearchStage::Simple))?, Start::Records)?;
             if explains(&with_drift.identifications) {
                 (decays, found) = (drifting, with_drift);
             }
@@ -190,7 +190,7 @@ fn preslides(found: &Identification) -> bool {
 
 /// Start of the fits of a search.
 #[derive(Clone, Copy)]
-enum From<'a> {
+enum Start<'a> {
     /// Values that the records show, of the fits without which there is no search.
     Records,
     /// The same of further fits.
@@ -199,7 +199,7 @@ enum From<'a> {
     Friction { shown: &'a ShownFriction, others: &'a [&'a Fitted] },
 }
 
-impl<'a> From<'a> {
+impl<'a> Start<'a> {
     fn of(shown: Option<&'a ShownFriction>, others: &'a [&'a Fitted]) -> Self {
         shown.map_or(Self::Further, |shown| Self::Friction { shown, others })
     }
@@ -221,19 +221,19 @@ impl Run<'_, '_> {
     }
 
     /// Fits the `candidates`. Those that begin where the records say are fitted after the time limit too.
-    fn fit(&self, candidates: Vec<Candidate>, from: From<'_>) -> Result<Found, IdentifyError> {
-        let must = matches!(from, From::Records);
+    fn fit(&self, candidates: Vec<Candidate>, start: Start<'_>) -> Result<Found, IdentifyError> {
+        let must = matches!(start, Start::Records);
         let end = self.end.filter(|_| !must);
         let mut found = Found::default();
-        let starts = |problem: &Problem<'_>| match from {
-            From::Friction { shown, others } => shown.starts(problem, others),
+        let starts = |problem: &Problem<'_>| match start {
+            Start::Friction { shown, others } => shown.starts(problem, others),
             _ => problem.starts(),
         };
         let fit = |candidate: &Candidate| {
             if is_past(end) {
                 return None;
             }
-            let begin = if let From::Friction { .. } = from { Begin::From(&starts) } else { Begin::Anywhere };
+            let begin = if let Start::Friction { .. } = start { Begin::From(&starts) } else { Begin::Anywhere };
             Some(self.inquiry.fit(candidate, self.decays.into(), begin, self.options, end))
         };
         let results = on_all_threads(candidates.iter().collect(), fit);
@@ -266,7 +266,7 @@ impl Run<'_, '_> {
         let shown = ShownFriction::of(&self.inquiry.machine, self.decays).ok();
         let of_speed = Run { options: &of_speed, ..*self };
         let allowed = of_speed.allowed(found, shown.as_ref())?;
-        let further = of_speed.fit(allowed, From::of(shown.as_ref(), &[]))?;
+        let further = of_speed.fit(allowed, Start::of(shown.as_ref(), &[]))?;
         found.add(further);
         if changes && found.changes() && !found.asks_for_more(tests) {
             return Ok(());
@@ -279,10 +279,10 @@ impl Run<'_, '_> {
             behind.is_some_and(|(found, _)| !found.structure.is_correlated())
         };
         if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
-            let bent = self.fit(self.candidates(beside(&SPRINGS))?, From::of(None, &[]))?;
+            let bent = self.fit(self.candidates(beside(&SPRINGS))?, Start::of(None, &[]))?;
             found.add(bent);
             if found.is_structured() {
-                let with_corners = self.fit(self.candidates(beside(&CORNERS))?, From::Records)?;
+                let with_corners = self.fit(self.candidates(beside(&CORNERS))?, Start::Records)?;
                 found.add(with_corners);
             }
         }
@@ -299,12 +299,12 @@ impl Run<'_, '_> {
         if tests.iter().any(is_seen) {
             let of_state = Run { options: &of_state, ..*self };
             let first = self.inquiry.at(SearchStage::Presliding);
-            let with_state = of_state.fit(of_state.candidates(first)?, From::of(shown.as_ref(), &[]))?;
+            let with_state = of_state.fit(of_state.candidates(first)?, Start::of(shown.as_ref(), &[]))?;
             found.add(with_state);
             let further = self.inquiry.at(SearchStage::FurtherPresliding);
             let nearest = closest(found.identifications.iter().filter(|found| preslides(found)));
             let nearest: Vec<&Fitted> = nearest.iter().map(|found| &found.fitted).collect();
-            let with_state = of_state.fit(of_state.candidates(further)?, From::of(shown.as_ref(), &nearest))?;
+            let with_state = of_state.fit(of_state.candidates(further)?, Start::of(shown.as_ref(), &nearest))?;
             found.add(with_state);
         }
         Ok(())
