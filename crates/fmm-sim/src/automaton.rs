@@ -3,7 +3,9 @@
 use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::error::SimulationError;
-use crate::mechanics::{Curve, Forcing, Levels, Piece, SEARCH_BUDGET, first_zero, holds_for_good, load, rounding};
+use crate::mechanics::{
+    Curve, Forcing, Levels, Piece, SEARCH_BUDGET, crossing, first_zero, holds_for_good, load, rounding,
+};
 use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
 use crate::trajectory::{Power, Recorder};
 
@@ -254,12 +256,14 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                     (EventKind::Breakaway, next, load)
                 }
                 // A speed of zero is not constant: such a branch ends like one that reaches rest.
-                ending if ending == Ending::RelativeRest || self.has_no_speed(mode, state) => {
+                ending @ (Ending::RelativeRest | Ending::SteadySpeed)
+                    if ending == Ending::RelativeRest || self.has_no_speed(mode, state) =>
+                {
                     state.velocity = self.belt;
                     let (next, load) = self.mode(&piece, time, state);
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
                 }
-                _ => {
+                Ending::RelativeRest | Ending::SteadySpeed => {
                     let next = if matches!(mode, Mode::Steady(_)) {
                         next
                     } else {
@@ -473,42 +477,4 @@ fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
 /// A time (s) within which a curve with these waves varies little.
 fn scale<D: Scalar>(curve: &Curve<D>) -> f64 {
     curve.frequencies().map(f64::recip).fold(f64::MAX, f64::min)
-}
-
-/// The first of some `guards` that falls to zero between `start` and `limit`, with its time and whether it is only
-/// grazed. Each has its curve, counted from `start`, and plain numbers of that; of two at one time the first counts.
-pub(crate) fn first_crossing<'a, G, D: Scalar>(
-    guards: impl IntoIterator<Item = (G, Curve<'a, D>, Curve<'a, f64>)>,
-    start: D,
-    limit: f64,
-    budget: &mut usize,
-) -> Result<Option<(G, D, bool)>, SimulationError> {
-    let begin = start.value();
-    let mut found: Option<(f64, G, Curve<D>)> = None;
-    for (guard, curve, plain) in guards {
-        let span = found.as_ref().map_or(limit - begin, |(elapsed, ..)| *elapsed);
-        if let Some(elapsed) = first_zero(&plain, span, budget)?
-            && found.as_ref().is_none_or(|(earlier, ..)| elapsed < *earlier)
-        {
-            found = Some((elapsed, guard, curve));
-        }
-    }
-    Ok(found.map(|(elapsed, guard, curve)| {
-        let (time, grazing) = crossing(&curve, start, begin + elapsed);
-        (guard, time, grazing)
-    }))
-}
-
-/// The time at which `guard`, counted from `start`, crosses zero near `time`, with its derivatives; and whether it only
-/// grazes zero there, without derivatives.
-pub(crate) fn crossing<D: Scalar>(guard: &Curve<D>, start: D, time: f64) -> (D, bool) {
-    if D::DIRECTIONS == 0 {
-        return (D::from(time), false);
-    }
-    let elapsed = -start + time;
-    let value = guard.at(elapsed);
-    let jet = guard.plain_jet(elapsed.value());
-    // Where the slope is that small, rounding moves the zero further than it is from the turning point.
-    let grazing = jet.slope * jet.slope <= 4.0 * f64::EPSILON * jet.size * jet.most_curvature.max(f64::MIN_POSITIVE);
-    if grazing { (D::from(time), true) } else { (-(value - value.value()) / jet.slope + time, false) }
 }

@@ -4,10 +4,9 @@
 use fmm_friction::{Element, PiecewiseLinearLaw, Regime};
 use fmm_model::Scalar;
 
-use crate::automaton::first_crossing;
 use crate::error::SimulationError;
 use crate::exact::closed_form::{Cancellation, respond};
-use crate::mechanics::{Curve, Decay, Forcing, Piece, ROUNDING, SEARCH_BUDGET, Wave};
+use crate::mechanics::{Curve, Decay, Forcing, Piece, ROUNDING, SEARCH_BUDGET, Wave, first_crossing};
 use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
 use crate::trajectory::{Power, Recorder};
 

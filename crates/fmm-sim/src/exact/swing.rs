@@ -3,11 +3,11 @@
 use fmm_friction::Affine;
 use fmm_model::{Oscillator, Scalar};
 
-use crate::automaton::{Branch, Ended, Ending, Phase, Slide, crossing, first_crossing};
+use crate::automaton::{Branch, Ended, Ending, Phase, Slide};
 use crate::error::SimulationError;
 use crate::exact::closed_form::{Cancellation, respond};
 use crate::exact::powers::Powers;
-use crate::mechanics::{Branches, Curve, Decay, Forcing, SEARCH_BUDGET, load, rounding};
+use crate::mechanics::{Branches, Curve, Decay, Forcing, SEARCH_BUDGET, crossing, first_crossing, load, rounding};
 use crate::scenario::{Sampling, Scenario, State};
 use crate::trajectory::{Power, Recorder};
 
