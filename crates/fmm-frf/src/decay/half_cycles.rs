@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use fmm_model::Estimated;
 use fmm_record::{Peak, Quantity, Record, Swings, noise, quantisation_step};
 
-use crate::decay::backbone::{BackbonePoint, Row};
+use crate::decay::point::{BackbonePoint, Row};
 
 /// Amplitudes that a point needs: of three half cycles in a row, the first and the last are compared.
 const COMPARED: usize = 3;

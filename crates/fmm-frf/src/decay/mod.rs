@@ -5,10 +5,12 @@ mod half_cycles;
 mod isolated;
 mod local;
 mod modes;
+mod point;
 mod spring;
 mod suggestion;
 
-pub use backbone::{Backbone, BackboneOptions, BackbonePoint};
+pub use backbone::{Backbone, BackboneOptions};
 pub use isolated::IsolatedMode;
 pub use modes::{DecayMode, decay_modes};
+pub use point::BackbonePoint;
 pub use suggestion::{DampingTerm, DampingTermKind, Suggestion};

@@ -3,7 +3,7 @@
 use fmm_fit::{LinearRegression, Weighting};
 use fmm_model::Estimated;
 
-use crate::decay::backbone::BackbonePoint;
+use crate::decay::point::BackbonePoint;
 
 /// Relative error of the closed form for the square of the frequency (1): at best, and as a multiple of (k₃ A²)³, the
 /// first power that it omits.

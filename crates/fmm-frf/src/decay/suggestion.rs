@@ -5,7 +5,7 @@ use std::fmt;
 
 use fmm_model::{Damping, Estimated, ModelError};
 
-use crate::decay::backbone::BackbonePoint;
+use crate::decay::point::BackbonePoint;
 use crate::decay::spring::{Fitted, scales, stiffening};
 
 /// Kind of friction or damping by the way in which it takes energy from a vibration.
