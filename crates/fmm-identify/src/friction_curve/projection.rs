@@ -44,7 +44,7 @@ pub(crate) struct Projected {
     /// D, beside the best curve of all in variances of the noise (1).
     pub(crate) misfit: f64,
     /// The friction over the speed tells all parameters of the law, so that D is its misfit.
-    pub(crate) is_told: bool,
+    pub(crate) shows_all: bool,
     /// Values of a fit to the records that begins there.
     pub(crate) start: Vec<f64>,
 }
@@ -109,11 +109,11 @@ impl ShownFriction {
         let starts = self.near(problem, others);
         let options = Options::default().with_max_iterations(MOST_ITERATIONS).with_cost_tolerance(ENOUGH);
         let options = options.with_polish_steps(0).with_restarts(0).with_jacobian_check(false);
-        let is_told = projection.is_told(starts.iter().map(|start| &start[shared.clone()]));
+        let shows_all = projection.shows_all(starts.iter().map(|start| &start[shared.clone()]));
         let end = |start: &Vec<f64>| {
             let fit = solve(&projection, &start[shared.clone()], &options).ok()?;
             let start = self.begun(problem, start, fit.values(), &projection.levels(fit.values())?);
-            Some(Projected { misfit: fit.sum_of_squares(), is_told, start })
+            Some(Projected { misfit: fit.sum_of_squares(), shows_all, start })
         };
         let mut ends: Vec<Projected> = starts.iter().filter_map(end).collect();
         ends.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
@@ -176,7 +176,7 @@ impl Projection<'_> {
 
     /// At all these values the friction is the same while the speed grows and while it falls, and at some of them each
     /// parameter acts on it: none is of the acceleration, of a dead zone or of an internal state.
-    fn is_told<'v>(&self, mut all: impl Iterator<Item = &'v [f64]> + Clone) -> bool {
+    fn shows_all<'v>(&self, mut all: impl Iterator<Item = &'v [f64]> + Clone) -> bool {
         let is_even = |values: &[f64]| {
             let all = [&vec![0.0; self.table.oscillator], values].concat();
             let at = |losing| friction(self.table, &all, 0.1 * self.shown.top, losing);

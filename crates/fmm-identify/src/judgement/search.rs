@@ -317,7 +317,7 @@ impl Run<'_, '_> {
         let Some(shown) = shown else { return Ok(candidates) };
         let score = |candidate: &Candidate| {
             let problem = Problem::of(candidate, self.inquiry.machine, self.decays).ok()?;
-            let projected = shown.projected(&problem, &[]).filter(|projected| projected.is_told)?;
+            let projected = shown.projected(&problem, &[]).filter(|projected| projected.shows_all)?;
             Some(projected.misfit + 2.0 * candidate.parameter_count() as f64)
         };
         let is_exact = self.decays.windows(2).all(|pair| pair[0].load_factor() == pair[1].load_factor());
