@@ -53,6 +53,16 @@ fn friction_that_falls_is_seen() {
     let preferred = comparison.preferred();
     assert!(holds(preferred, "sliding_mu", 0.06) && holds(preferred, "static_mu", 0.12), "{comparison}");
     assert!(comparison.score_tests().iter().any(fmm_identify::ScoreTest::is_significant));
+    // A law that is far from the friction over the speed is named and not fitted; a fit of it alone agrees.
+    let viscous = "viscous + quadratic";
+    assert!(comparison.excluded().iter().any(|law| law == viscous), "{comparison}");
+    assert!(comparison.to_string().contains("excluded without a fit"), "{comparison}");
+    assert!(comparison.identifications().iter().all(|found| found.law() != viscous), "{comparison}");
+    let all = [viscous, preferred.law().split(',').next().unwrap()].map(|law| Candidate::named(law).unwrap());
+    let decay =
+        Experiment::ring_down(&record("bad_120.csv", Quantity::Velocity, "m/s"), &Preparation::default()).unwrap();
+    let fitted = compare(&machine(), &[decay], &all).unwrap();
+    assert!(fitted.not_excluded().all(|found| found.law() != viscous), "{fitted}");
 }
 
 /// The same friction in five times the noise: nothing is decided, and laws that fall are named.

@@ -170,4 +170,11 @@ fn a_headline_says_what_was_not_measured() {
     let held = ["identify", record.to_str().unwrap(), "--law", "coulomb", "--hold", "friction_per_mass=0.2"];
     let text = String::from_utf8(fmm(&held).stdout).unwrap();
     assert!(text.contains("friction_per_mass = 0.2: friction_per_mass = 0.2 m/s² (held); "), "{text}");
+    // The friction that the record shows comes before the law.
+    let mut lines = text.lines().skip(1);
+    assert!(
+        lines.next().is_some_and(|line| line.starts_with("friction over speed, no law assumed: at rest")),
+        "{text}"
+    );
+    assert!(lines.next().is_some_and(|line| line.starts_with("coulomb, ")), "{text}");
 }

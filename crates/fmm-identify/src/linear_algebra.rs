@@ -70,6 +70,21 @@ mod tests {
         assert!(direction[0].abs() + direction[1].abs() < 1e-9 && (direction[2] - 0.7).abs() < 1e-15, "{direction:?}");
     }
 
+    /// A covariance of numbers 1e8 apart, two of which change together: its root gives it back, and no variance that
+    /// follows is negative.
+    #[test]
+    fn a_root_gives_back_the_covariance() {
+        let deviations = [1e8, 1e8 * (1.0 + 1e-12), 1e-3];
+        let correlation = [[1.0, -1.0, 0.5], [-1.0, 1.0, -0.5], [0.5, -0.5, 1.0]];
+        let element = |at: usize| correlation[at / 3][at % 3] * deviations[at / 3] * deviations[at % 3];
+        let covariance: Vec<f64> = (0..9).map(element).collect();
+        let root = root_of_covariance(&covariance, 3);
+        for (at, expected) in covariance.iter().enumerate() {
+            let found: f64 = (0..3).map(|k| root[at / 3 * 3 + k] * root[at % 3 * 3 + k]).sum();
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} in place of {expected}");
+        }
+    }
+
     #[test]
     fn of_independent_columns_it_is_the_inverse() {
         let columns = [vec![2.0, 0.0, 1.0], vec![1.0, 3.0, 0.0], vec![0.0, 1.0, -4.0]];

@@ -151,3 +151,17 @@ pub(crate) fn with_change(candidate: &Candidate) -> Option<Candidate> {
         _ => candidate.clone().with(terms),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A change of 2.9 u that is not named may be one of 4.9 u; one of nothing would be named from 3 u on.
+    #[test]
+    fn what_would_not_show_reaches_beyond_the_best_value() {
+        let unseen = |w: f64| FrictionChange { per_half_cycle: w, uncertainty: 1e-3, price: 2.0 }.largest_unseen();
+        for (w, expected) in [(0.0, 3e-3), (0.9e-3, 3e-3), (2.9e-3, 4.9e-3), (-2.9e-3, 4.9e-3)] {
+            assert!((unseen(w) - expected).abs() < 1e-12, "{w}: {}", unseen(w));
+        }
+    }
+}

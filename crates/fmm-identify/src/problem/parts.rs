@@ -129,7 +129,7 @@ impl Problem<'_> {
 #[cfg(test)]
 mod tests {
     use fmm_fit::Residuals;
-    use fmm_friction::{BoucWen, BoucWenByLevel, Coulomb, LawFamily, LuGre, MakkarDixon};
+    use fmm_friction::{BoucWen, BoucWenByLevel, Coulomb, LawFamily, LuGre, MakkarDixon, PowerLaw};
 
     use super::super::tests::decays;
     use super::*;
@@ -163,6 +163,8 @@ mod tests {
         let below = |name: &str, lower: f64| (name.to_owned(), lower, slowest.recip());
         let expected = [below("rise", f64::MIN_POSITIVE), below("fall", f64::MIN_POSITIVE), below("level_rise", 0.0)];
         assert_eq!(bounded_in_sight(&makkar), expected);
+        let power = Problem::of(&Candidate::of::<PowerLaw>(), machine, &decays).unwrap();
+        assert_eq!(bounded_in_sight(&power), [("exponent".to_owned(), 0.02, 1.0)]);
         // What is held keeps its value.
         let held = Terms::default().holding("rise", 1e9).unwrap();
         let makkar = Problem::of(&Candidate::of::<MakkarDixon>().with(held), machine, &decays).unwrap();
