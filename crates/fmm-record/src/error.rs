@@ -162,7 +162,7 @@ impl RecordError {
     }
 
     /// Error of a decoder, with the part of the file.
-    #[cfg(any(feature = "mat", feature = "npy"))]
+    #[cfg(any(feature = "mat", feature = "npy", feature = "gzip", feature = "workbook", feature = "wav"))]
     pub(crate) fn undecoded(what: &str, source: impl Error + Send + Sync + 'static) -> Self {
         Self::Damaged { line: None, what: format!("{what}: {source}"), source: Some(Arc::new(source)) }
     }

@@ -89,7 +89,19 @@ impl Span {
             let (times, values) = (times.len(), values.len());
             return Err(RecordError::time(None, format!("{times} time stamps were given for {values} values")));
         }
-        let (start, interval) = uniform_grid(times)?;
+        let (start, interval) = match uniform_grid(times) {
+            Err(error) if self == Self::default() => return Err(error),
+            // Stamps outside may be anything.
+            Err(_) => {
+                let is_inside =
+                    |time: &f64| self.from.is_none_or(|from| *time >= from) && self.to.is_none_or(|to| *time <= to);
+                let first = times.iter().position(is_inside).unwrap_or(0);
+                let count = times[first..].iter().take_while(|time| is_inside(time)).count();
+                let (start, interval) = uniform_grid(&times[first..first + count])?;
+                return self.record(start, interval, values[first..first + count].to_vec());
+            }
+            Ok(grid) => grid,
+        };
         self.record(start, interval, values)
     }
 }

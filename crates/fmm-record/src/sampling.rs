@@ -51,6 +51,17 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
     let worst = steps.iter().map(|step| (step - usual).abs()).fold(0.0, f64::max);
     let is_odd = |step: f64| (step - usual).abs() > (0.5 * worst).max(tolerance);
+    let repeated = steps.iter().filter(|step| **step == 0.0).count();
+    if usual <= worst && steps.iter().all(|step| *step >= 0.0) && 2 * repeated > steps.len() && steps.len() > 9 {
+        let [rate, worst] = [steps.len() as f64 / steps.iter().sum::<f64>(), worst].map(in_six_digits);
+        let what = format!(
+            "time stamps repeat, {repeated} of {}: they are rounded to {worst} s, more than an interval; their span says about \
+             {rate} Hz; give the rate",
+            times.len()
+        );
+        let index = steps.iter().position(|step| *step == 0.0).map(|before| before + 1);
+        return Some(RecordError::time(index, what));
+    }
     let Some(before) = steps.iter().position(|step| is_odd(*step)) else {
         let before = steps.iter().position(|step| *step <= 0.0)?;
         let (time, previous) = (times[before + 1], times[before]);
@@ -64,7 +75,22 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
         steps.iter().filter(|step| !is_odd(**step)).fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
     let interval = if count > 0.0 { sum / count } else { usual };
     let expected = previous + interval;
-    Some(not_uniform(index, time, expected, interval))
+    let missing = ((time - previous) / interval).round() - 1.0;
+    let is_gap = missing >= 1.0 && (time - previous - (missing + 1.0) * interval).abs() <= 0.1 * interval;
+    match not_uniform(index, time, expected, interval) {
+        RecordError::TimeAxis { index, what } if is_gap => {
+            let what = what.split(';').next().unwrap_or_default();
+            let [previous, time] = [previous, time].map(in_six_digits);
+            Some(RecordError::time(
+                index,
+                format!(
+                    "{what}; missing samples: {missing}, and nothing is put in their place; use the record up to {previous} s or \
+                     from {time} s on"
+                ),
+            ))
+        }
+        error => Some(error),
+    }
 }
 
 /// A time stamp (s) off a uniform grid, which would have it at `expected` (s).
@@ -129,6 +155,20 @@ pub enum Sampling {
         /// Its name.
         name: String,
     },
+    /// From a column of times of day; the record begins at 0 s.
+    TimesOfDay {
+        /// Its name.
+        name: String,
+        /// The first of them.
+        first: String,
+    },
+    /// From a column that counts the days of a calendar; the record begins at 0 s.
+    Days {
+        /// Its name.
+        name: String,
+        /// The first of them.
+        first: f64,
+    },
     /// From a scalar variable in the file that holds the rate (Hz).
     RateVariable {
         /// Its name.
@@ -158,6 +198,15 @@ impl std::fmt::Display for Sampling {
         match self {
             Self::Given { rate } => write!(f, "given as {rate} Hz"),
             Self::Times { name } => write!(f, "found from the time stamps in \"{name}\""),
+            Self::TimesOfDay { name, first } => {
+                write!(f, "found from the times of day in \"{name}\", counted from the first, {first}")
+            }
+            Self::Days { name, first } => {
+                write!(
+                    f,
+                    "found from the days in \"{name}\", which are those of a calendar, counted from the first, {first}"
+                )
+            }
             Self::RateVariable { name, rate } => write!(f, "read as {rate} Hz from the variable \"{name}\""),
             Self::IntervalVariable { name, interval } => {
                 write!(f, "found from the interval of {interval} s in the variable \"{name}\"")

@@ -368,7 +368,7 @@ mod tests {
         assert!((1.5..2.0).contains(&summary.to), "{summary}");
         for preparation in [Preparation::default().to(1.9), Preparation::default().from(1.95)] {
             let one = Experiment::ring_down(&record, &preparation).unwrap();
-            assert_eq!(one.summary().further_releases, []);
+            assert!(one.summary().further_releases.is_empty());
             assert_eq!((one.summary().second_mode, one.summary().period_change), (None, None));
         }
     }

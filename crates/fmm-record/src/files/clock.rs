@@ -66,6 +66,14 @@ impl Clock {
         Self { is_time, is_counter, unit }
     }
 
+    /// The same of a column whose unit was given, if it was.
+    pub(crate) fn in_unit(self, given: Option<&str>) -> Self {
+        match given.and_then(seconds_in) {
+            Some(seconds) => Self { is_counter: false, unit: Written::Seconds(seconds), ..self },
+            None => self,
+        }
+    }
+
     /// True if it is called time, in a unit that is known or not written.
     pub(crate) fn is_known_time(&self) -> bool {
         self.is_time && !matches!(self.unit, Written::Other(_))
@@ -81,13 +89,13 @@ impl Clock {
         self.unit == Written::Nothing && are_whole(numbers)
     }
 
-    /// Brings the time stamps of the series called `name` to seconds; `by_nature` is true if it is time only because it
-    /// increases uniformly.
+    /// Brings the time stamps of the series called `name` to seconds, and tells what they were; `by_nature` is true if it
+    /// is time only because it increases uniformly.
     ///
     /// # Errors
     /// [`RecordError::TimeAxis`] if something else is written where the unit belongs, or if they
     /// count samples: by their name, or as whole numbers of which nobody said that they are time.
-    pub(crate) fn to_seconds(&self, name: &str, by_nature: bool, times: &mut [f64]) -> Result<(), RecordError> {
+    pub(crate) fn to_seconds(&self, name: &str, by_nature: bool, times: &mut [f64]) -> Result<Sampling, RecordError> {
         // A stamp of a computer is a whole number of whatever its clock counts.
         let is_vague = by_nature || (self.is_time && name.to_lowercase().contains("stamp"));
         match &self.unit {
@@ -97,13 +105,32 @@ impl Clock {
                 );
                 return Err(RecordError::time(None, what));
             }
-            _ if self.is_counter => return Err(counter(name)),
-            Written::Nothing if is_vague && self.counts(times) => return Err(counter(name)),
+            _ if self.is_counter => return Err(counter(name, times)),
+            Written::Nothing if is_vague && self.counts(times) => return Err(counter(name, times)),
+            Written::Nothing if are_days(times) => {
+                let first = times[0];
+                times.iter_mut().for_each(|time| *time = DAY * (*time - first));
+                return Ok(Sampling::Days { name: name.into(), first });
+            }
             Written::Seconds(scale) if *scale != 1.0 => times.iter_mut().for_each(|time| *time *= scale),
             _ => {}
         }
-        Ok(())
+        Ok(Sampling::Times { name: name.into() })
     }
+}
+
+/// Seconds of a day.
+const DAY: f64 = 86_400.0;
+
+/// True for stamps that count the days of a calendar, of the years 1970 to 2100: those of spreadsheets from 1900 on,
+/// those of MATLAB from the year 0 on. Steps so small would be 200 kHz or more if they were seconds; as days they are
+/// at most 0.4 s.
+fn are_days(times: &[f64]) -> bool {
+    const LARGEST_STEP: f64 = 5e-6;
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return false };
+    let is_date = |days: &f64| (25_569.0..73_051.0).contains(days) || (719_529.0..767_011.0).contains(days);
+    let step = (last - first) / (times.len() as f64 - 1.0);
+    is_date(first) && is_date(last) && step > 0.0 && step < LARGEST_STEP
 }
 
 impl Reading {
@@ -129,10 +156,17 @@ impl Reading {
     }
 }
 
-/// A series that counts samples and tells no time.
-pub(crate) fn counter(name: &str) -> RecordError {
-    let what =
-        format!("\"{name}\" counts samples and tells no time; give the sampling rate, or time stamps with their unit");
+/// A series that counts samples and tells no time; one in other steps than 1 may be time in a unit that nobody said.
+pub(crate) fn counter(name: &str, counts: &[f64]) -> RecordError {
+    let step = counts.get(..2).map_or(1.0, |pair| pair[1] - pair[0]);
+    let unit = if step == 1.0 || step.fract() != 0.0 {
+        String::new()
+    } else {
+        format!("; in steps of {step} it may be milliseconds, say their unit")
+    };
+    let what = format!(
+        "\"{name}\" counts samples and tells no time; give the sampling rate, or time stamps with their unit{unit}"
+    );
     RecordError::time(None, what)
 }
 
@@ -221,7 +255,7 @@ mod tests {
     fn seconds(name: &str) -> Option<f64> {
         let clock = Clock::of(name);
         let mut times = [0.0, 0.5];
-        clock.is_time.then(|| clock.to_seconds(name, false, &mut times).ok().map(|()| 2.0 * times[1]))?
+        clock.is_time.then(|| clock.to_seconds(name, false, &mut times).ok().map(|_| 2.0 * times[1]))?
     }
 
     #[test]

@@ -4,14 +4,18 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use super::format::utf_16;
 use super::{Format, Reader};
 use crate::error::RecordError;
 #[cfg(any(feature = "mat", feature = "npy"))]
 use crate::files::arrays::{Array, ArrayFile, Slice};
 use crate::files::reading::{Column, Reading};
+#[cfg(any(feature = "json", feature = "wav", feature = "workbook"))]
+use crate::files::tables;
 use crate::files::uff;
 use crate::units::label::Label;
 use crate::units::request::Request;
+use crate::units::seconds_in;
 
 /// Length of the part of a file that tells its format (bytes).
 const HEAD: usize = 1 << 16;
@@ -37,6 +41,8 @@ pub struct DataFile {
     reader: Reader,
     format: Format,
     content: Content,
+    /// Choices in the file as a whole, in sentences.
+    remarks: Vec<String>,
 }
 
 #[derive(Debug, Clone)]
@@ -87,7 +93,9 @@ impl Reader {
         let mut file = File::open(path).map_err(failed)?;
         let mut bytes = Vec::new();
         file.by_ref().take(HEAD as u64).read_to_end(&mut bytes).map_err(failed)?;
-        if matches!(Format::of(&bytes), Ok(Format::Text)) {
+        // A pipe is read once.
+        let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
+        if is_file && utf_16(&bytes).is_none() && matches!(Format::of(&bytes), Ok(Format::Text)) {
             return self.checked(Format::Text, Content::Text(Source::Path(path.into())));
         }
         file.read_to_end(&mut bytes).map_err(failed)?;
@@ -101,10 +109,30 @@ impl Reader {
     /// [`RecordError::Unsupported`] for the file as a whole; [`RecordError::Options`] for an option that the format
     /// itself decides. A fault of a channel is an error only when the channel is asked for.
     pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
-        let bytes = bytes.into();
-        let format = Format::of(&bytes[..bytes.len().min(HEAD)])?;
+        let mut bytes = bytes.into();
+        if bytes.starts_with(b"\x1F\x8B") {
+            bytes = unpacked(&bytes)?;
+        }
+        let head = &bytes[..bytes.len().min(HEAD)];
+        let format = Format::of(head)?;
+        if let (Format::Text, Some(order)) = (format, utf_16(head)) {
+            let units: Vec<u16> = bytes.chunks(2).map(|pair| order.unsigned(pair) as u16).collect();
+            bytes = String::from_utf16_lossy(&units).into_bytes();
+        }
         let content = match format {
             Format::Text => Content::Text(Source::Bytes(bytes)),
+            #[cfg(feature = "workbook")]
+            Format::Workbook => {
+                let (text, remark) = tables::workbook::text(bytes, self.table)?;
+                let reader = Self { table: None, ..self.clone() };
+                let mut file = reader.checked(format, Content::Text(Source::Bytes(text)))?;
+                file.remarks.extend(remark);
+                return Ok(file);
+            }
+            #[cfg(feature = "json")]
+            Format::Json => Content::Text(Source::Bytes(tables::json::text(&bytes)?)),
+            #[cfg(feature = "wav")]
+            Format::Wav => Content::Text(Source::Bytes(tables::wav::text(&bytes)?)),
             #[cfg(feature = "mat")]
             Format::Matlab => Content::Arrays(crate::files::mat::parse(&bytes)?),
             #[cfg(feature = "hdf5")]
@@ -112,7 +140,13 @@ impl Reader {
             #[cfg(feature = "npy")]
             Format::Numpy => Content::Arrays(crate::files::npy::parse(&bytes)?),
             Format::Universal => Content::Universal(uff::UffFile::parse(&bytes)?),
-            #[cfg(not(all(feature = "hdf5", feature = "npy")))]
+            #[cfg(not(all(
+                feature = "hdf5",
+                feature = "npy",
+                feature = "workbook",
+                feature = "json",
+                feature = "wav"
+            )))]
             _ => return Err(format.missing()),
         };
         self.checked(format, content)
@@ -121,21 +155,25 @@ impl Reader {
     /// The open file; refuses options that the format itself decides.
     fn checked(&self, format: Format, content: Content) -> Result<DataFile, RecordError> {
         let Self { separator, skip, time, rate, .. } = self;
+        if let Some(unit) = self.time_unit.as_deref().filter(|unit| unit.is_empty() || seconds_in(unit).is_none()) {
+            return Err(RecordError::options(format!("\"{unit}\" is no unit of time; give s, ms, us, ns, min or h")));
+        }
         let is_universal = format == Format::Universal;
         if is_universal && (time.is_some() || rate.is_some()) {
             return Err(RecordError::options(
                 "a Universal File states its own sampling; leave out the rate and the time",
             ));
         }
-        if format != Format::Text && (separator.is_some() || *skip > 0) {
-            return Err(RecordError::options(format!(
-                "the file is of format {format}, and no text: leave out the separator and the lines to skip"
-            )));
+        let is_text = matches!(content, Content::Text(_));
+        let is_laid_out = separator.is_some() || *skip > 0;
+        if !is_text && (is_laid_out || self.table.is_some() || self.repairs) {
+            let both = if is_laid_out { "the separator and the lines to skip" } else { "the table and the repair" };
+            return Err(RecordError::options(format!("the file is of format {format}, and no text: leave out {both}")));
         }
         if time.is_some() && rate.is_some() {
             return Err(RecordError::options("both time stamps and a rate were given; give one of them"));
         }
-        Ok(DataFile { reader: self.clone(), format, content })
+        Ok(DataFile { reader: self.clone(), format, content, remarks: Vec::new() })
     }
 }
 
@@ -149,7 +187,7 @@ impl DataFile {
     /// named, with the reason.
     pub fn warnings(&self) -> Vec<String> {
         match &self.content {
-            Content::Text(_) => Vec::new(),
+            Content::Text(_) => self.remarks.clone(),
             #[cfg(any(feature = "mat", feature = "npy"))]
             Content::Arrays(file) => {
                 let warning = |(name, reason): &(String, RecordError)| format!("{name} cannot be read: {reason}");
@@ -273,4 +311,21 @@ impl DataFile {
         }
         Ok(reading)
     }
+}
+
+/// The file in a file that gzip compressed.
+#[cfg(feature = "gzip")]
+fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, RecordError> {
+    use crate::files::reading::{MOST_INFLATED, too_large};
+    let mut inside = Vec::new();
+    let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(MOST_INFLATED as u64 + 1);
+    decoder.read_to_end(&mut inside).map_err(|error| RecordError::undecoded("the gzip file is damaged", error))?;
+    if inside.len() > MOST_INFLATED { Err(too_large()) } else { Ok(inside) }
+}
+
+#[cfg(not(feature = "gzip"))]
+fn unpacked(_: &[u8]) -> Result<Vec<u8>, RecordError> {
+    let what =
+        "a file that gzip compressed is read with the feature \"gzip\" of fmm-record, which is off; or unpack it";
+    Err(RecordError::MissingFeature { what: what.into() })
 }

@@ -1,6 +1,7 @@
 //! Format of a file by its first bytes.
 
 use crate::error::RecordError;
+use crate::files::number::ByteOrder;
 
 /// A format of files that hold records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -8,7 +9,13 @@ use crate::error::RecordError;
 pub enum Format {
     /// Columns of numbers as text (CSV, TSV, LVM, …).
     Text,
-    /// MATLAB, versions 5 to 7; version 4 is recognised and refused.
+    /// Workbook of a spreadsheet (XLS, XLSX, XLSB, ODS).
+    Workbook,
+    /// JSON: arrays, or one object a line.
+    Json,
+    /// Sound (WAV).
+    Wav,
+    /// MATLAB, versions 4 to 7.
     Matlab,
     /// HDF5, which MATLAB writes as version 7.3.
     Hdf5,
@@ -22,14 +29,19 @@ impl Format {
     /// The format of a file that begins with `head`, of which 64 KB are enough.
     pub(super) fn of(head: &[u8]) -> Result<Self, RecordError> {
         Self::found(head).map_err(|what| RecordError::UnknownFormat {
-            what: format!("this file is {what}; text, MATLAB, HDF5, NumPy and Universal Files are read"),
+            what: format!(
+                "this file is {what}; text, workbooks, JSON, WAV, MATLAB, HDF5, NumPy and Universal Files are read"
+            ),
         })
     }
 
     /// Error of a file whose reader was not compiled.
-    #[cfg(not(all(feature = "hdf5", feature = "npy")))]
+    #[cfg(not(all(feature = "hdf5", feature = "npy", feature = "workbook", feature = "json", feature = "wav")))]
     pub(super) fn missing(self) -> RecordError {
         let (format, feature) = match self {
+            Self::Workbook => ("a workbook", "workbook"),
+            Self::Json => ("JSON", "json"),
+            Self::Wav => ("a WAV file", "wav"),
             Self::Hdf5 => ("a MATLAB version 7.3 file (HDF5)", "hdf5"),
             Self::Numpy => ("a file of NumPy", "npy"),
             _ => ("a MATLAB file", "mat"),
@@ -53,23 +65,97 @@ impl Format {
         if is_matlab || is_matlab_4(head) {
             return Ok(Self::Matlab);
         }
-        let is_workbook = head.windows(3).any(|window| window == b"xl/");
-        if head.starts_with(b"\x93NUMPY") || (head.starts_with(b"PK") && !is_workbook) {
+        let has = |part: &[u8]| head.windows(part.len()).any(|window| window == part);
+        if head.starts_with(b"PK") {
+            return match () {
+                () if has(b"xl/") || has(b"opendocument.spreadsheet") => Ok(Self::Workbook),
+                () if has(b".npy") => Ok(Self::Numpy),
+                () => Err("a ZIP archive; unpack it"),
+            };
+        }
+        if head.starts_with(b"\x93NUMPY") {
             return Ok(Self::Numpy);
+        }
+        if head.starts_with(b"\xD0\xCF\x11\xE0") {
+            return Ok(Self::Workbook);
+        }
+        if head.starts_with(b"RIFF") && head.get(8..12) == Some(b"WAVE") {
+            return Ok(Self::Wav);
+        }
+        let is_binary = head.iter().any(|byte| *byte < b'\t');
+        let is_that = |begin: &[u8]| head.starts_with(begin) && (is_binary || matches!(begin[0], b'%' | b'<'));
+        if let Some((_, what)) = OTHERS.iter().find(|(begin, _)| is_that(begin)) {
+            return Err(what);
+        }
+        if is_json(head) {
+            return Ok(Self::Json);
         }
         if is_universal(head) {
             return Ok(Self::Universal);
         }
-        match head {
-            [b'P', b'K', ..] | [0xD0, 0xCF, 0x11, 0xE0, ..] => Err("a workbook; save its table as CSV"),
-            [0x1F, 0x8B, ..] => Err("compressed by gzip; unpack it"),
-            [b'R', b'I', b'F', b'F', ..] => Err("a WAV file; convert it to CSV with its rate"),
-            [b'T', b'D', b'S', b'm', ..] => Err("a TDMS file of LabVIEW; export it as text (LVM) or to MATLAB"),
-            // UTF-16 is text, and is refused as such with a remedy.
-            [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => Ok(Self::Text),
-            _ if head.contains(&0) => Err("neither text nor a binary format that is known"),
-            _ => Ok(Self::Text),
+        // UTF-16 is text.
+        if head.contains(&0) && utf_16(head).is_none() {
+            return Err("neither text nor a binary format that is known; export its numbers as CSV");
         }
+        Ok(Self::Text)
+    }
+}
+
+/// Beginnings of other files, what they are, and how their numbers come out of them.
+const OTHERS: [(&[u8], &str); 20] = [
+    (
+        b"TDSm",
+        "a TDMS file of LabVIEW; export it as text (LVM) or to MATLAB, or by npTDMS in Python: \
+         TdmsFile.read(\"FILE\").as_dataframe(time_index=True).to_csv(\"record.csv\")",
+    ),
+    (b"MDF     ", "an MDF file; export it as CSV or to MATLAB, as asammdf does"),
+    (b"PAR1", "a Parquet file; save it as CSV, as pandas does by to_csv"),
+    (b"ARROW1", "a Feather file; save it as CSV, as pandas does by to_csv"),
+    (b"\x80\x03", PICKLE),
+    (b"\x80\x04", PICKLE),
+    (b"\x80\x05", PICKLE),
+    (b"SQLite format 3", "a database (SQLite); export its table as CSV"),
+    (b"\x1F\x8B", "compressed by gzip inside of an archive; unpack it"),
+    (b"7z\xBC\xAF", "a 7z archive; unpack it"),
+    (b"Rar!", "a RAR archive; unpack it"),
+    (b"\xFD7zXZ", "compressed by xz; unpack it"),
+    (b"BZh", "compressed by bzip2; unpack it"),
+    (b"\x28\xB5\x2F\xFD", "compressed by zstd; unpack it"),
+    (b"%PDF-", "a PDF, which has no numbers to read; export the record itself as CSV"),
+    (b"\x89PNG", "a picture; export the record itself as CSV"),
+    (b"\xFF\xD8\xFF", "a picture; export the record itself as CSV"),
+    (b"<?xml", DOCUMENT),
+    (b"<!DOCTYPE", DOCUMENT),
+    (b"<html", DOCUMENT),
+];
+
+const DOCUMENT: &str = "a document of XML or HTML; export its table as CSV";
+
+const PICKLE: &str = "a pickle of Python; save its arrays by numpy.savez or as CSV";
+
+/// The order of bytes in UTF-16 text: by its mark, or by zeros in every second place; `None` for other text.
+pub(super) fn utf_16(head: &[u8]) -> Option<ByteOrder> {
+    let every_second = |zeros: usize| {
+        let mut bytes = head.iter().take(64).enumerate();
+        head.len() > 7 && bytes.all(|(place, byte)| (place % 2 == zeros) == (*byte == 0))
+    };
+    match head {
+        [0xFF, 0xFE, ..] => Some(ByteOrder::Little),
+        [0xFE, 0xFF, ..] => Some(ByteOrder::Big),
+        _ if every_second(1) => Some(ByteOrder::Little),
+        _ if every_second(0) => Some(ByteOrder::Big),
+        _ => None,
+    }
+}
+
+/// True for the beginning of a list or an object of JSON: a bracket may also begin a title, and a brace a formula.
+fn is_json(head: &[u8]) -> bool {
+    let head = head.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(head).trim_ascii_start();
+    let Some((open, rest)) = head.split_first() else { return false };
+    match (open, rest.trim_ascii_start().first()) {
+        (b'{', Some(next)) => matches!(next, b'"' | b'}'),
+        (b'[', Some(next)) => matches!(next, b'[' | b'{' | b'-' | b'"' | b'0'..=b'9'),
+        _ => false,
     }
 }
 
@@ -77,6 +163,9 @@ impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Text => "separated text",
+            Self::Workbook => "workbook",
+            Self::Json => "JSON",
+            Self::Wav => "WAV",
             Self::Matlab => "MATLAB",
             Self::Hdf5 => "HDF5 (MATLAB version 7.3)",
             Self::Numpy => "NumPy",
@@ -121,11 +210,22 @@ mod tests {
         assert_eq!(Format::found(b"    -1\n   151\nname\n"), Ok(Format::Universal));
         assert_eq!(Format::found(b""), Ok(Format::Text), "whose reader says that it is empty");
         assert_eq!(Format::found(b"\xFF\xFEt\0,\0v\0"), Ok(Format::Text));
+        assert_eq!(Format::found(b"t\0,\0v\0\r\0\n\0"), Ok(Format::Text), "UTF-16 without its mark");
+        assert_eq!(Format::found(b"\0t\0,\0v\0\n"), Ok(Format::Text));
+        for begin in ["{\"t\": [0, 1]}", "[[0, 1]]", "\u{FEFF}\n[{}]", "[1, 2]", "{}"] {
+            assert_eq!(Format::found(begin.as_bytes()), Ok(Format::Json), "{begin}");
+        }
+        for begin in ["[Header]\n0,1\n", "{title}\n", "[s],[m/s]\n0,1\n"] {
+            assert_eq!(Format::found(begin.as_bytes()), Ok(Format::Text), "{begin}");
+        }
+        assert_eq!(Format::found(b"PK\x03\x04\0\0[Content_Types].xml\0xl/workbook.xml"), Ok(Format::Workbook));
+        assert_eq!(Format::found(b"RIFF\0\0\0\0WAVE"), Ok(Format::Wav));
         for (head, word) in [
-            (&b"PK\x03\x04\0\0[Content_Types].xml\0xl/workbook.xml"[..], "workbook"),
-            (b"\x1F\x8B\x08\0", "gzip"),
-            (b"RIFF\0\0\0\0WAVE", "WAV"),
-            (b"TDSm\x0E\0", "LabVIEW"),
+            (&b"PK\x03\x04\0\0word/document.xml"[..], "ZIP"),
+            (b"TDSm\x0E\0", "npTDMS"),
+            (b"%PDF-1.7", "PDF"),
+            (b"PAR1\x15\0", "Parquet"),
+            (b"<?xml version", "XML"),
             (&[0; 500], "binary"),
         ] {
             assert!(Format::found(head).unwrap_err().contains(word), "{word}");

@@ -12,6 +12,8 @@ mod mat;
 mod npy;
 mod number;
 pub(crate) mod reading;
+#[cfg(any(feature = "json", feature = "wav", feature = "workbook"))]
+mod tables;
 #[cfg(all(test, feature = "hdf5", feature = "npy"))]
 mod tests;
 pub mod uff;
@@ -52,15 +54,18 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 ///
 /// # Text
 ///
-/// Comma, semicolon or tab separated, or aligned by blanks. Files of LabVIEW (`.lvm`), Tektronix, Rigol, PicoScope and
-/// catman and the `sep=` of Excel need nothing said.
+/// Comma, semicolon or tab separated, or aligned by blanks, in UTF-8 or UTF-16. Files of LabVIEW (`.lvm`), SignalExpress,
+/// Tektronix, Rigol, PicoScope and catman and the `sep=` of Excel need nothing said. Sheets of workbooks, JSON and sound
+/// are read by the same rules; the whole numbers of a sound are counts.
 ///
 /// | what | found by default |
 /// |---|---|
 /// | separator | semicolon or tab if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
 /// | first row | the first line with as many fields as the last ones have, and numbers where they have numbers |
 /// | names | the line above the first row, with the units of a row of units; or a comment there, if it names the time |
-/// | decimal comma | where it is used throughout and the separator is not a comma; one column of whole numbers with commas is refused if it may be two |
+/// | decimal comma | where it is used throughout, between quotes if commas separate columns; one column of whole numbers with commas is refused if it may be two |
+/// | thousands | points, commas, blanks or apostrophes between groups of three digits, beside another decimal mark |
+/// | time of day | `10:00:00.002` with or without a date; the record begins at 0 s, as it does by the day numbers of spreadsheets and MATLAB |
 /// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
 /// | channel | the first column that is neither the time nor called a number of samples |
 ///
@@ -93,7 +98,10 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 pub struct Reader {
     pub(crate) separator: Option<u8>,
     pub(crate) skip: u64,
+    pub(crate) table: Option<usize>,
+    pub(crate) repairs: bool,
     pub(crate) time: Option<Column>,
+    pub(crate) time_unit: Option<String>,
     pub(crate) channel: Option<Column>,
     pub(crate) rate: Option<f64>,
     pub(crate) span: Span,
@@ -106,6 +114,23 @@ impl Reader {
     #[must_use]
     pub fn skip(mut self, lines: u64) -> Self {
         self.skip = lines;
+        self
+    }
+
+    /// The table to read, counted from 1: a segment of LabVIEW, a table below another one with the same names, a sheet.
+    /// By default tables whose times go on are one record, and otherwise the first is read, with a remark; of sheets, the
+    /// one with most cells.
+    #[must_use]
+    pub fn table(mut self, table: usize) -> Self {
+        self.table = Some(table);
+        self
+    }
+
+    /// Reads around damaged lines of a text, each with a remark: one at the beginning or the end is left out, and a
+    /// straight line between its neighbours stands for one inside.
+    #[must_use]
+    pub fn repair(mut self) -> Self {
+        self.repairs = true;
         self
     }
 
@@ -128,6 +153,13 @@ impl Reader {
     #[must_use]
     pub fn time(mut self, column: impl Into<Column>) -> Self {
         self.time = Some(column.into());
+        self
+    }
+
+    /// The unit of the time stamps, such as `ms`, whatever their name tells.
+    #[must_use]
+    pub fn time_unit(mut self, unit: impl Into<String>) -> Self {
+        self.time_unit = Some(unit.into());
         self
     }
 

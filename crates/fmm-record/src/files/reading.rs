@@ -19,6 +19,11 @@ pub struct Reading {
     pub columns: Vec<String>,
     /// Source of the sampling rate.
     pub sampling: Sampling,
+    /// Sentences about what was not used as it stands: damaged lines, further parts. Statements of a [`Reader`] that
+    /// choose otherwise are named between backquotes.
+    ///
+    /// [`Reader`]: crate::Reader
+    pub remarks: Vec<String>,
 }
 
 /// Label of the channel that was read.
@@ -30,11 +35,11 @@ impl From<&Reading> for Label {
 
 /// Largest size of the expanded data of one file, all together (bytes): 33 million numbers. A small file can
 /// be made to expand a thousandfold; one that exceeds this limit is refused.
-#[cfg(any(feature = "mat", feature = "npy"))]
+#[cfg(any(feature = "mat", feature = "npy", feature = "gzip", feature = "workbook"))]
 pub(crate) const MOST_INFLATED: usize = 1 << 28;
 
 /// More than that.
-#[cfg(any(feature = "mat", feature = "npy"))]
+#[cfg(any(feature = "mat", feature = "npy", feature = "gzip", feature = "workbook"))]
 pub(crate) fn too_large() -> RecordError {
     RecordError::damaged(format!("the variables of the file expand to more than {MOST_INFLATED} bytes"))
 }

@@ -118,8 +118,8 @@ impl ArrayFile {
             let name = time.written(self.notation);
             // The name of a matrix is not that of its first series.
             let clock = if time.series == Series::Whole { Clock::of(leaf(&time.array)) } else { Clock::nameless() };
-            clock.to_seconds(&name, false, &mut times)?;
-            (reader.span.timed(&times, values)?, Sampling::Times { name })
+            let sampling = clock.in_unit(reader.time_unit.as_deref()).to_seconds(&name, false, &mut times)?;
+            (reader.span.timed(&times, values)?, sampling)
         } else if let Some((rate, sampling)) = stated(self.scalars(array))? {
             (reader.span.sampled(rate, values)?, sampling)
         } else {
@@ -130,7 +130,14 @@ impl ArrayFile {
             ));
         };
         let time = time.map(|time| time.written(self.notation));
-        Ok(Reading { record, channel: channel.written(self.notation), time, columns: self.names(), sampling })
+        Ok(Reading {
+            record,
+            channel: channel.written(self.notation),
+            time,
+            columns: self.names(),
+            sampling,
+            remarks: Vec::new(),
+        })
     }
 
     /// The channel with its row or column, where the array is a matrix.

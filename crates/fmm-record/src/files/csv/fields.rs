@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use super::stamp::Stamp;
 use crate::error::RecordError;
 
 /// Separator between the fields of a line.
@@ -98,22 +99,57 @@ impl<'a> Row<'a> {
         self.fields.len()
     }
 
+    pub(super) fn is_blank(&self) -> bool {
+        self.fields.iter().all(Range::is_empty)
+    }
+
     pub(super) fn field(&self, column: usize) -> &'a [u8] {
         self.fields.get(column).map_or(&[], |range| &self.line[range.clone()])
     }
 }
 
-/// The number in `field`, if it is one, and its decimal mark, if it has one. A decimal comma counts only where commas
-/// do not separate columns.
-pub(super) fn number(field: &[u8], separator: Separator) -> Option<(f64, Option<char>)> {
+/// The number in `field`, if it is one, and its decimal mark, if it shows one. Marks between groups of three digits do
+/// not count: `-6.174,5`, `1,234.5`, `1 234,5`, `1'234`. One mark alone is a decimal mark: only quotes keep a comma
+/// inside of a field where commas separate columns.
+pub(super) fn number(field: &[u8]) -> Option<(f64, Option<char>)> {
     let text = std::str::from_utf8(field).ok()?;
     if let Ok(value) = text.parse::<f64>() {
         return Some((value, text.contains('.').then_some('.')));
     }
-    if separator == Separator::Sign(b',') || text.contains('.') || text.ends_with(',') {
+    // The last mark that stands only once is the decimal mark.
+    let decimal = text.rfind([',', '.']).filter(|at| text.matches(&text[*at..=*at]).count() == 1);
+    let (whole, rest) = text.split_at(decimal.unwrap_or(text.len()));
+    let fraction = rest.get(1..).unwrap_or_default();
+    let (whole, grouping) = without_groups(whole)?;
+    if rest.len() == 1 || (grouping.is_some() && grouping == rest.chars().next()) {
         return None;
     }
-    text.replacen(',', ".", 1).parse().ok().map(|value| (value, Some(',')))
+    let value = format!("{whole}.{fraction}").parse().ok()?;
+    let other = grouping.and_then(|mark| [(',', '.'), ('.', ',')].into_iter().find(|pair| pair.0 == mark));
+    Some((value, rest.chars().next().or(other.map(|pair| pair.1))))
+}
+
+/// A whole number with commas or points between groups of digits that is no number of the other decimal mark.
+pub(super) fn grouped(field: &[u8], decimal: char) -> Option<f64> {
+    let (digits, grouping) = without_groups(std::str::from_utf8(field).ok()?)?;
+    grouping.filter(|mark| *mark != decimal)?;
+    digits.parse().ok()
+}
+
+/// A whole number without the mark between its groups of three digits, and that mark.
+fn without_groups(whole: &str) -> Option<(String, Option<char>)> {
+    const MARKS: [char; 7] = [',', '.', ' ', '\'', '\u{2019}', '\u{a0}', '\u{202f}'];
+    let Some(mark) = whole.chars().find(|sign| MARKS.contains(sign)) else { return Some((whole.to_owned(), None)) };
+    let mut groups = whole.trim_start_matches(['-', '+']).split(mark);
+    let are_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let begins = groups.next().is_some_and(|first| (1..=3).contains(&first.len()) && are_digits(first));
+    let goes_on = groups.all(|group| group.len() == 3 && are_digits(group));
+    (begins && goes_on).then(|| (whole.replace(mark, ""), Some(mark)))
+}
+
+/// True for a number and for a time of day.
+pub(super) fn is_value(field: &[u8]) -> bool {
+    number(field).is_some() || Stamp::of(field).is_some()
 }
 
 /// Length of a written number: digits behind the decimal mark, and characters of its exponent and of the rest.
@@ -174,14 +210,31 @@ mod tests {
 
     #[test]
     fn both_decimal_marks() {
-        let (comma, semicolon) = (Separator::Sign(b','), Separator::Sign(b';'));
-        assert_eq!(number(b"1.5", comma), Some((1.5, Some('.'))));
-        assert_eq!(number(b"-1,5e-3", semicolon), Some((-1.5e-3, Some(','))));
-        assert_eq!(number(b"+15", semicolon), Some((15.0, None)));
-        assert_eq!(number(b"1,5", comma), None);
-        for text in ["", "1.234,5", "1,234,5", "abc", ",", "0x10", "1 5", "1,"] {
-            assert_eq!(number(text.as_bytes(), semicolon), None, "{text:?}");
+        assert_eq!(number(b"1.5"), Some((1.5, Some('.'))));
+        assert_eq!(number(b"-1,5e-3"), Some((-1.5e-3, Some(','))));
+        assert_eq!(number(b"+15"), Some((15.0, None)));
+        for text in ["", "1,234,5", "abc", ",", "0x10", "1 5", "1,", "1.23,5", "12.3456,7", "1,2,3", "1234.567,5"] {
+            assert_eq!(number(text.as_bytes()), None, "{text:?}");
         }
+    }
+
+    #[test]
+    fn thousands_are_separated_by_any_mark() {
+        for (text, value, mark) in [
+            ("-6.174,0", -6174.0, Some(',')),
+            ("1,234.5e3", 1_234_500.0, Some('.')),
+            ("12 345,5", 12_345.5, Some(',')),
+            ("12\u{202f}345", 12_345.0, None),
+            ("1'234.5", 1234.5, Some('.')),
+            ("1.234.567", 1_234_567.0, Some(',')),
+            ("1,234,567", 1_234_567.0, Some('.')),
+        ] {
+            assert_eq!(number(text.as_bytes()), Some((value, mark)), "{text:?}");
+        }
+        assert_eq!(
+            (grouped(b"-6,174", '.'), grouped(b"6,17", '.'), grouped(b"6,174", ',')),
+            (Some(-6174.0), None, None)
+        );
     }
 
     #[test]

@@ -37,6 +37,12 @@ pub(super) fn header(
         Header { stated: above.iter().filter_map(|line| statement(line, separator)).collect(), ..Header::default() };
     let fitting =
         |line: usize| above.get(line).filter(|_| line >= begin).and_then(|line| fitted(&line.text, columns, separator));
+    if let Some(names) = signal_express(above, columns, separator) {
+        let interval = above.windows(2).find(|pair| is_called(&pair[0], b"dt:"));
+        let interval = interval.and_then(|pair| number(Row::of(&pair[1].text, separator).field(0)));
+        found.stated.extend(interval.map(|(interval, _)| ("dt".to_owned(), interval)));
+        return Ok(found.named(names));
+    }
     let Some(last) = above.len().checked_sub(1).filter(|last| *last >= begin) else {
         let comment = row.and_then(|row| row.comment.as_deref());
         let names = comment.and_then(|comment| names_in(comment, columns, separator));
@@ -50,7 +56,7 @@ pub(super) fn header(
         // The end of a preamble.
         return Ok(found.named(positions(width)));
     };
-    let is_number = |column: &usize| number(names[*column].as_bytes(), separator).is_some();
+    let is_number = |column: &usize| number(names[*column].as_bytes()).is_some();
     let mut numbers = (0..width).filter(|column| columns[*column] == Kind::Number);
     let first = numbers.next();
     if first.into_iter().chain(numbers).any(|column| is_number(&column)) {
@@ -60,17 +66,39 @@ pub(super) fn header(
         }
         return Ok(found.named(positions(width)));
     }
-    let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named, separator));
+    // LabVIEW has the units of its columns higher up.
+    let units = above.iter().map(|line| Row::of(&line.text, separator)).find(|row| row.field(0) == b"Y_Unit_Label");
+    if let Some(units) = units {
+        found.names = (0..width).map(|column| with_unit(&names[column], &labview(&units, column))).collect();
+        found.bare = names;
+        return Ok(found);
+    }
+    let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named));
     let Some(named) = named else { return Ok(found.named(names)) };
     found.bare = named;
     for (name, unit) in found.bare.iter().zip(&names) {
         // An oscilloscope states the increment of its first column there.
-        if let Some((value, _)) = number(unit.as_bytes(), separator) {
+        if let Some((value, _)) = number(unit.as_bytes()) {
             found.stated.push((format!("{} {name}", found.bare[0]), value));
         }
     }
     found.names = found.bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
     Ok(found)
+}
+
+/// The names in a text of SignalExpress, where each kind of statement stands below a line that calls it.
+fn signal_express(above: &[Line], columns: &[Kind], separator: Separator) -> Option<Vec<String>> {
+    above.last().filter(|line| is_called(line, SIGNAL_EXPRESS))?;
+    let names = above.windows(2).find(|pair| is_called(&pair[0], b"channel names:"))?;
+    fitted(&names[1].text, columns, separator)
+}
+
+/// The line of SignalExpress above its table.
+pub(super) const SIGNAL_EXPRESS: &[u8] = b"data:";
+
+/// True for a line of nothing but `name`.
+pub(super) fn is_called(line: &Line, name: &[u8]) -> bool {
+    line.text.trim_ascii() == name
 }
 
 fn positions(width: usize) -> Vec<String> {
@@ -80,12 +108,11 @@ fn positions(width: usize) -> Vec<String> {
 /// A name and the number behind it on the same line.
 fn statement(line: &Line, separator: Separator) -> Option<(String, f64)> {
     let row = Row::of(&line.text, separator);
-    let (value, _) = (1..row.len()).find_map(|column| number(row.field(column), separator))?;
+    let (value, _) = (1..row.len()).find_map(|column| number(row.field(column)))?;
     let name = text(row.field(0)).trim_end_matches([':', '=']).trim().to_owned();
     // A third field may be a unit, which must be that of a time or a rate.
-    let units = (1..row.len())
-        .map(|column| row.field(column))
-        .filter(|field| !field.is_empty() && number(field, separator).is_none());
+    let units =
+        (1..row.len()).map(|column| row.field(column)).filter(|field| !field.is_empty() && number(field).is_none());
     let plain = units.map(text).all(|unit| matches!(&*unit, "s" | "Hz" | "S/s" | "Sa/s"));
     plain.then_some((name, value))
 }
@@ -161,9 +188,14 @@ fn are_units(fields: &[String]) -> bool {
 }
 
 /// True for fields that may be the names above a row of units: some are filled, none is a number.
-fn are_names(fields: &[String], separator: Separator) -> bool {
+fn are_names(fields: &[String]) -> bool {
     let filled: Vec<&String> = fields.iter().filter(|field| !field.is_empty()).collect();
-    !filled.is_empty() && filled.iter().all(|name| number(name.as_bytes(), separator).is_none())
+    !filled.is_empty() && filled.iter().all(|name| number(name.as_bytes()).is_none())
+}
+
+/// The unit of a column in the row of LabVIEW's that has them, which begins with a name.
+fn labview(units: &Row, column: usize) -> String {
+    if column == 0 { String::new() } else { text(units.field(column)) }
 }
 
 /// A unit without the brackets around it.

@@ -1,9 +1,9 @@
 //! Layout of a text file: beginning of the table, separator, names of the columns.
 
-use super::header::{Header, header};
+use super::header::{Header, SIGNAL_EXPRESS, header, is_called};
 use super::lines::Line;
 use crate::error::RecordError;
-use crate::files::csv::fields::{Kind, NO_ROWS, Row, Separator, number, text};
+use crate::files::csv::fields::{Kind, NO_ROWS, Row, Separator, is_value, text};
 
 /// The layout of a table.
 pub(super) struct Layout {
@@ -22,6 +22,9 @@ impl Layout {
     pub(super) fn of(lines: &[Line], given: Option<Separator>) -> Result<Self, RecordError> {
         let (begin, told) = preamble(lines);
         let body = &lines[begin..];
+        // A further segment of LabVIEW has a header of its own.
+        let further = body.iter().position(|line| begin > 0 && line.text.starts_with(b"Channels"));
+        let body = &body[..further.unwrap_or(body.len())];
         if body.is_empty() {
             return Err(RecordError::damaged(NO_ROWS));
         }
@@ -29,21 +32,41 @@ impl Layout {
             Some(separator) => separator,
             None => likely_separator(body)?,
         };
-        let rows: Vec<Row> = body.iter().map(|line| Row::of(&line.text, separator)).collect();
+        let mut rows: Vec<Row> = body.iter().map(|line| Row::of(&line.text, separator)).collect();
+        // Spreadsheets save rows in which nothing is.
+        while rows.last().is_some_and(Row::is_blank) {
+            rows.pop();
+        }
+        if rows.is_empty() {
+            return Err(RecordError::damaged(NO_ROWS));
+        }
         let width = usual_width(&rows);
-        let columns = kinds(&rows, width, separator);
-        let first = first_row(&rows, &columns, separator);
+        let mut columns = kinds(&rows, width);
+        let first = first_row(&rows, &columns);
+        // Rows that end with a separator may have columns above which nothing stands in them: Rigol's increment.
+        let named = first.checked_sub(1).map_or(0, |above| rows[above].len());
+        if columns.last() == Some(&Kind::Blank) && named > width {
+            columns.resize(named, Kind::Blank);
+        }
         let header = header(&lines[..begin + first], begin, lines.get(begin + first), &columns, separator)?;
         Ok(Self { separator, columns, header, first: begin + first })
     }
 }
 
+/// The line of LabVIEW that ends a header.
+pub(super) const END_OF_HEADER: &[u8] = b"***End_of_Header***";
+
 /// Earliest line of the table, and the separator, if lines state them: the first one of a spreadsheet
-/// (`sep=;`), and the one of LabVIEW that ends its header.
+/// (`sep=;`), and the one of LabVIEW that ends its header, or that of its first segment, or that of SignalExpress.
 fn preamble(lines: &[Line]) -> (usize, Option<Separator>) {
     let is_end = |line: &Line| line.text.trim_ascii().to_ascii_lowercase().starts_with(b"***end_of_header***");
-    if let Some(end) = lines.iter().rposition(is_end) {
+    let segment = lines.iter().position(|line| line.text.starts_with(b"Channels")).unwrap_or(lines.len());
+    let of_segment = (segment..lines.len()).find(|at| is_end(&lines[*at]));
+    if let Some(end) = of_segment.or_else(|| lines.iter().rposition(is_end)) {
         return (end + 1, None);
+    }
+    if let Some(names) = lines.iter().position(|line| is_called(line, SIGNAL_EXPRESS)) {
+        return (names + 1, None);
     }
     let first = lines.first().map_or(&b""[..], |line| &line.text);
     match first.strip_prefix(b"sep=").or_else(|| first.strip_prefix(b"SEP=")) {
@@ -61,10 +84,10 @@ fn usual_width(rows: &[Row]) -> usize {
 }
 
 /// Content of the columns in the last two rows of that width. One damaged number does not make a column of text.
-fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
+fn kinds(rows: &[Row], width: usize) -> Vec<Kind> {
     let last: Vec<&Row> = rows.iter().rev().filter(|row| row.len() == width).take(2).collect();
     let kind = |column: usize| {
-        if last.iter().any(|row| number(row.field(column), separator).is_some()) {
+        if last.iter().any(|row| is_value(row.field(column))) {
             Kind::Number
         } else if last.iter().all(|row| row.field(column).is_empty()) {
             Kind::Blank
@@ -77,10 +100,10 @@ fn kinds(rows: &[Row], width: usize, separator: Separator) -> Vec<Kind> {
 
 /// The first row of the table: of its width, with a number in the first column of numbers and in half of all others.
 /// A fault in its other fields is then an error with the line, and not a lost row.
-fn first_row(rows: &[Row], columns: &[Kind], separator: Separator) -> usize {
+fn first_row(rows: &[Row], columns: &[Kind]) -> usize {
     let numbers: Vec<usize> = (0..columns.len()).filter(|column| columns[*column] == Kind::Number).collect();
     let is_row = |row: &Row| {
-        let is_number = |column: &&usize| number(row.field(**column), separator).is_some();
+        let is_number = |column: &&usize| is_value(row.field(**column));
         let found = numbers.iter().filter(is_number).count();
         row.len() == columns.len() && numbers.first().iter().any(is_number) && 2 * found >= numbers.len()
     };
@@ -99,7 +122,7 @@ fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
     }
     let are_aligned = |line: &Line| {
         let row = Row::of(&line.text, Separator::Blanks);
-        row.len() > 1 && (0..row.len()).all(|column| number(row.field(column), Separator::Blanks).is_some())
+        row.len() > 1 && (0..row.len()).all(|column| is_value(row.field(column)))
     };
     if last().all(are_aligned) {
         return Ok(Separator::Blanks);

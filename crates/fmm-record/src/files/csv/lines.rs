@@ -38,14 +38,8 @@ impl<R: BufRead> Lines<R> {
     pub(super) fn next(&mut self, line: &mut Line) -> Result<bool, RecordError> {
         line.comment = None;
         while self.read(line)? {
-            if line.number == 1 {
-                if line.text.starts_with(&[0xFF, 0xFE]) || line.text.starts_with(&[0xFE, 0xFF]) {
-                    let what = "the file is UTF-16 text; save it as UTF-8".into();
-                    return Err(RecordError::UnknownFormat { what });
-                }
-                if line.text.starts_with("\u{FEFF}".as_bytes()) {
-                    line.text.drain(..3);
-                }
+            if line.number == 1 && line.text.starts_with("\u{FEFF}".as_bytes()) {
+                line.text.drain(..3);
             }
             if line.number <= self.skip {
                 continue;

@@ -136,7 +136,6 @@ fn damage_is_named_with_its_line() {
         let error = read_text(&format!("t,v\n0,1\n1,{number}\n")).unwrap_err();
         assert!(error.to_string().contains("not finite; the first is sample"), "{number}");
     }
-    assert!(says(&Reader::default().read_from(&b"\xff\xfet\0"[..]), "UTF-16"));
     assert!(says(&Reader::default().read_text(io::repeat(b'1')), "is longer than"));
     assert!(says(&Reader::default().separator(b'.').read_from(&b""[..]), "cannot separate columns"));
     assert!(says(&Reader::default().read("/no/such/file.csv"), "cannot read"));
@@ -283,13 +282,16 @@ mod programs {
         let rows = "0,000000\t1,5\t-2,0\n0,000500\t1,25\t-1,0\n0,001000\t0,75\t-0,5\n0,001500\t0,5\t0,25\n";
         let one = reading(&format!("{head}X_Value\tgyro\tforce\tComment\n{rows}"));
         assert_eq!((one.record.values(), one.record.rate()), (&[1.5, 1.25, 0.75, 0.5][..], 2000.0));
-        assert_eq!((&one.channel[..], one.columns), ("gyro", ["X_Value", "gyro", "force"].map(String::from).to_vec()));
+        assert_eq!(
+            (&one.channel[..], one.columns),
+            ("gyro [Volts]", ["X_Value", "gyro [Volts]", "force [Volts]"].map(String::from).to_vec())
+        );
         // Without a column of time, its header tells the interval.
         let rows = "\t1,5\t-2,0\n\t1,25\t-1,0\n\t0,75\t-0,5\n\t0,5\t0,25\n";
         let none = reading(&format!("{head}X_Value\tgyro\tforce\tComment\n{rows}"));
         assert_eq!((none.record.values(), none.record.rate()), (&[1.5, 1.25, 0.75, 0.5][..], 2000.0));
         let expected = Sampling::IntervalVariable { name: "Delta_X".into(), interval: 5e-4 };
-        assert_eq!((&none.channel[..], none.time, none.sampling), ("gyro", None, expected));
+        assert_eq!((&none.channel[..], none.time, none.sampling), ("gyro [Volts]", None, expected));
     }
 
     #[test]
@@ -472,4 +474,186 @@ fn values_outside_of_the_span_may_be_missing() {
     assert!(says(&span(2.0, 3.0), "no sample lies between 2 s and 3 s; the record spans 0 s to 1 s"));
     let file = Reader::default().from(0.25).to(0.75).parse(text.as_bytes()).unwrap();
     assert_eq!(file.channels().unwrap()[0].rate, Some(8.0), "a channel that can be read has a rate");
+}
+
+#[test]
+fn thousands_and_quoted_decimal_commas() {
+    for text in [
+        "t [s];v [m/s]\n0,0;299,5\n0,5;-6.174,0\n1,0;12.345,25\n",
+        "t [s],v [m/s]\n\"0,0\",\"299,5\"\n\"0,5\",\"-6174,0\"\n\"1,0\",\"12345,25\"\n",
+        "t [s],v [m/s]\n0.0,299.5\n0.5,\"-6,174\"\n1.0,\"12,345.25\"\n",
+        "t [s]\tv [m/s]\n0,0\t299,5\n0,5\t-6 174,0\n1,0\t12\u{a0}345,25\n",
+    ] {
+        let reading = read_text(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((reading.record.values(), reading.record.rate()), (&[299.5, -6174.0, 12_345.25][..], 2.0), "{text}");
+    }
+}
+
+#[test]
+fn text_in_utf_16_is_read_with_and_without_its_mark() {
+    let text = "Zeit [s]\tv [µm/s]\r\n0,0\t1,5\r\n0,5\t2,5\r\n1,0\t-1\r\n";
+    let units: Vec<u16> = text.encode_utf16().collect();
+    let little: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+    let big: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+    for bytes in [[&b"\xff\xfe"[..], &little].concat(), [&b"\xfe\xff"[..], &big].concat(), little, big] {
+        let reading = Reader::default().read_from(bytes).unwrap();
+        assert_eq!((reading.record.values(), &reading.channel[..]), (&[1.5, 2.5, -1.0][..], "v [µm/s]"));
+    }
+}
+
+#[cfg(feature = "gzip")]
+#[test]
+fn a_compressed_file_is_what_is_in_it() {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    io::Write::write_all(&mut encoder, b"t [s],v [m/s]\n0,1.5\n1,2.5\n").unwrap();
+    let bytes = encoder.finish().unwrap();
+    assert_eq!(Reader::default().read_from(&bytes[..]).unwrap().record.values(), [1.5, 2.5]);
+    assert!(says(&Reader::default().read_from(&bytes[..20]), "the gzip file is damaged"));
+}
+
+#[test]
+fn times_of_day_count_from_the_first() {
+    for (name, stamps) in [
+        ("timestamp", ["2024-05-02 23:59:59.999", "2024-05-03 00:00:00.001", "2024-05-03 00:00:00.003"]),
+        ("Time", ["10:00:00.000", "10:00:00.002", "10:00:00.004"]),
+        ("Uhrzeit", ["10:00:00,000", "10:00:00,002", "10:00:00,004"]),
+        ("Time [hh:mm:ss.fff]", ["00:00.000", "00:00.002", "00:00.004"]),
+        ("", ["2024-05-02T10:00:00.000Z", "2024-05-02T10:00:00.002Z", "2024-05-02T10:00:00.004Z"]),
+    ] {
+        let text = format!("{name};v\n{};1\n{};2\n{};4\n", stamps[0], stamps[1], stamps[2]);
+        let reading = read_text(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((reading.record.start(), reading.record.rate()), (0.0, 500.0), "{text}");
+        let sampling = reading.sampling.to_string();
+        assert!(sampling.ends_with(&format!("counted from the first, {}", stamps[0])), "{sampling}");
+    }
+    let motion = Reader::default().channel("v").read_from(&b"t,v\n0,10:00:01\n1,10:00:02\n"[..]);
+    assert!(says(&motion, "holds times of day, such as 10:00:01, and no motion"));
+}
+
+#[test]
+fn days_of_a_calendar_are_no_seconds() {
+    for day in [46_085.5, 739_000.25] {
+        let row = |i: u32| format!("{:.12},{}\n", day + f64::from(i) * 0.002 / 86_400.0, i % 7);
+        let text = format!("time,v [mm/s]\n{}", (0..500).map(row).collect::<String>());
+        let reading = read_text(&text).unwrap();
+        assert!(
+            (reading.record.rate() - 500.0).abs() < 0.01 && reading.record.start() == 0.0,
+            "{}",
+            reading.record.rate()
+        );
+        assert!(matches!(reading.sampling, Sampling::Days { first, .. } if first == day), "{}", reading.sampling);
+    }
+    let seconds = read_text("time,v\n46085.500,1\n46085.501,2\n46085.502,1\n").unwrap();
+    assert!((seconds.record.interval() - 1e-3).abs() < 1e-9, "a clock that has run for half a day");
+}
+
+#[test]
+fn the_unit_of_time_may_be_said() {
+    let reader = Reader::default().time_unit("ms");
+    for text in ["t,v\n0,1\n2,2\n4,1\n", "1234, 0.1\n1236, 0.2\n1238, 0.1\n", "t [s],v\n0,1\n2,2\n4,1\n"] {
+        assert_eq!(reader.read_from(text).unwrap().record.rate(), 500.0, "{text}");
+    }
+    let counts = message("1234, 0.1\n1236, 0.2\n1238, 0.1\n");
+    assert!(counts.ends_with("in steps of 2 it may be milliseconds, say their unit"), "{counts}");
+    assert!(says(&Reader::default().time_unit("mm").read_from("t,v\n0,1\n2,2\n"), "\"mm\" is no unit of time"));
+}
+
+#[test]
+fn empty_rows_at_the_end_lose_nothing() {
+    let text = "t [s],v [m/s],\n0.0,1.5,\n0.5,2.5,\n1.0,-1,\n,,\n,,\n,,\n,,\n";
+    assert_eq!(values(text), [1.5, 2.5, -1.0]);
+    assert!(says(&read_text(",,\n,,\n"), "no rows"));
+}
+
+#[test]
+fn damaged_lines_are_named_and_used_around_on_request() {
+    let text = "4, 0.01\u{fffd}7\n0.0, 1.0\n0.5, 2.0\n1.0, 3?5\n1.5, 4.0\n2.0\n2.5, 6.0\n3.0, 7.0\n3";
+    assert!(message(text).starts_with("line 1, column \"1\": \"0.01\u{fffd}7\" is not a number"), "{}", message(text));
+    let reading = Reader::default().repair().read_from(text).unwrap();
+    assert_eq!((reading.record.values(), reading.record.rate()), (&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0][..], 2.0));
+    let serial =
+        text.replace("0.0,", "1234,").replace("0.5,", "1236,").replace("1.0,", "1238,").replace("1.5,", "1240,");
+    let serial = serial.replace("2.5,", "1244,").replace("3.0,", "1246,");
+    let file = Reader::default().repair().time_unit("ms").parse(serial).unwrap();
+    assert_eq!(file.channels().unwrap().len(), 1, "the first column is time in spite of the damage in others");
+    assert_eq!(file.reading().unwrap().record.rate(), 500.0);
+    assert_eq!(reading.remarks.len(), 5, "{:?}", reading.remarks);
+    assert_eq!(reading.remarks[1], "line 4, column \"1\": \"3?5\" is not a number; the line was not used");
+    assert!(reading.remarks[4].starts_with("straight lines between their neighbours stand for 2 damaged lines"));
+}
+
+#[test]
+fn tables_of_a_text_are_joined_or_told() {
+    let goes_on = "t [s],v [m/s]\n0,1\n1,2\n2,3\nt [s],v [m/s]\n3,4\n4,5\n5,6\n";
+    let joined = read_text(goes_on).unwrap();
+    assert_eq!(joined.record.len(), 6);
+    assert!(joined.remarks[0].starts_with("the file has 2 tables whose times go on"), "{:?}", joined.remarks);
+    let second = Reader::default().table(2).read_from(goes_on).unwrap().record;
+    assert_eq!((second.start(), second.values()), (3.0, &[4.0, 5.0, 6.0][..]));
+    let begins_anew = goes_on.replace("\n3,4", "\n0,4").replace("\n4,5", "\n1,5").replace("\n5,6", "\n2,6");
+    let first = read_text(&begins_anew).unwrap();
+    assert_eq!(first.record.values(), [1.0, 2.0, 3.0]);
+    assert!(first.remarks[0].contains("the first was read, which has 3 of 6 samples; `table`"), "{:?}", first.remarks);
+    assert!(says(&Reader::default().table(3).read_from(&begins_anew[..]), "there is no table 3; the file has 2"));
+}
+
+#[test]
+fn segments_of_labview_have_headers_of_their_own() {
+    let segment = |begin: f64| {
+        let row = |i: u32| format!("{:.3}\t{}\t\n", begin + f64::from(i) * 2e-3, f64::from(i) + begin);
+        format!(
+            "\t\nChannels\t1\t\nSamples\t3\t\nY_Unit_Label\tmm/s\t\nX_Dimension\tTime\t\nX0\t{begin:.3E}\t\nDelta_X\t0.002\t\n\
+             ***End_of_Header***\t\t\nX_Value\tVelocity\tComment\n{}{}{}",
+            row(0),
+            row(1),
+            row(2)
+        )
+    };
+    let head = "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\tOne\n***End_of_Header***\t\n";
+    let both = read_text(&format!("{head}{}{}", segment(0.0), segment(0.006))).unwrap();
+    assert_eq!((both.record.len(), both.record.rate(), &both.channel[..]), (6, 500.0, "Velocity [mm/s]"));
+    let apart = format!("{head}{}{}", segment(0.0), segment(1.0));
+    let first = read_text(&apart).unwrap();
+    assert_eq!((first.record.values(), first.remarks.len()), (&[0.0, 1.0, 2.0][..], 1));
+    let second = Reader::default().table(2).read_from(apart).unwrap().record;
+    assert_eq!((second.start(), second.values()), (1.0, &[1.0, 2.0, 3.0][..]));
+}
+
+#[test]
+fn oscilloscopes_and_loggers() {
+    let rigol = read_text("X,CH1,Start,Increment,\nSequence,Volt,0.0e+00,2.0e-03\n0,1.5,\n1,2.5,\n2,-1,\n").unwrap();
+    assert_eq!((rigol.record.values(), rigol.record.rate()), (&[1.5, 2.5, -1.0][..], 500.0));
+    let express = "channel names: \nDev1_ai0\tDev1_ai1\nstart times: \n3/4/2026 13:59:59.0\t3/4/2026 13:59:59.0\ndt: \n\
+                   0.001000\t0.001000\ndata:\n1.5E-01\t1\n2.5E-01\t2\n-1E-1\t3\n";
+    let express = Reader::default().channel("Dev1_ai1").read_from(express).unwrap();
+    assert_eq!((express.record.values(), express.record.rate()), (&[1.0, 2.0, 3.0][..], 1000.0));
+    let one = "channel names: \nDev1_ai0\nstart times: \n3/4/2026 13:59:59.0\ndt: \n0.001000\ndata:\n1.5E-01\n2.5E-01\n-1E-1\n";
+    let one = read_text(one).unwrap();
+    assert_eq!(
+        (one.record.values(), one.record.rate(), &one.channel[..]),
+        (&[0.15, 0.25, -0.1][..], 1000.0, "Dev1_ai0")
+    );
+}
+
+#[test]
+fn a_gap_is_named_with_both_ends_and_the_record_beside_it_is_read() {
+    let row = |i: u32| format!("{:.3},{i}\n", f64::from(if i < 50 { i } else { i + 20 }) * 1e-3);
+    let text = format!("t [s],v\n{}", (0..100).map(row).collect::<String>());
+    let refused = message(&text);
+    assert!(
+        refused.ends_with(
+            "missing samples: 20, and nothing is put in their place; use the record up to 0.049 s or from 0.07 s on"
+        ),
+        "{refused}"
+    );
+    let before = Reader::default().to(0.049).read_from(text.as_bytes()).unwrap().record;
+    assert_eq!((before.len(), before.start()), (50, 0.0));
+    let behind = Reader::default().from(0.07).read_from(text.as_bytes()).unwrap().record;
+    assert_eq!((behind.len(), behind.start()), (50, 0.07));
+    let row = |i: u32| format!("{:.2},{i}\n", f64::from(i) * 1e-3);
+    let rounded = message(&format!("t [s],v\n{}", (0..1001).map(row).collect::<String>()));
+    assert!(
+        rounded.contains("rounded to 0.01 s, more than an interval; their span says about 1000 Hz; give the rate"),
+        "{rounded}"
+    );
 }

@@ -183,7 +183,7 @@ impl UffFile {
         };
         let set = &self.sets()[index];
         let (record, sampling) = set.sampled_record(span)?;
-        Ok(Reading { record, channel: set.name(), time: None, columns, sampling })
+        Ok(Reading { record, channel: set.name(), time: None, columns, sampling, remarks: Vec::new() })
     }
 
     /// Position of the only record over time in the file.
