@@ -57,6 +57,11 @@ impl Warning {
             warnings.push(Self::NotSi { unit: unit.to_owned() });
         }
         warnings.extend(Self::of_narrow_stop(identification.motions()));
+        let value = |name: &str| identification.finding(name).map(Finding::value);
+        let mass = if let Scale::Mass(mass) = machine.scale() { Some(mass.value()) } else { None };
+        let load = machine.normal_load().map(|load| load.value());
+        let frequency = value("natural_frequency_hz");
+        warnings.extend(Self::of_plausibility(frequency, value("mu"), load, mass));
         warnings
     }
 

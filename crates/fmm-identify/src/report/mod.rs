@@ -12,7 +12,7 @@ use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
 use crate::judgement::{Comparison, ScoreTest};
 use crate::machine::term::CHANGE_PER_HALF_CYCLE;
-use crate::warning::write_warnings;
+use crate::warning::{Warning, write_warnings};
 
 impl Identification {
     fn write_findings(&self, f: &mut fmt::Formatter<'_>, rests: &[Option<f64>]) -> fmt::Result {
@@ -119,7 +119,9 @@ impl Comparison {
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
         };
-        format!("{}: {found}; {sure}; {surer}.", preferred.law())
+        let odd = preferred.warnings().iter().find(|warning| matches!(warning, Warning::Implausible { .. }));
+        let odd = odd.map_or_else(String::new, |odd| format!("; but {odd}"));
+        format!("{}: {found}{odd}; {sure}; {surer}.", preferred.law())
     }
 }
 

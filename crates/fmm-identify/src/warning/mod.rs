@@ -1,5 +1,6 @@
 //! Warnings: limits of the results that a reader has to know.
 
+mod plausible;
 mod sentences;
 mod severity;
 
@@ -36,6 +37,13 @@ pub enum Warning {
     PeriodDependsOnAmplitude {
         /// Relative change of the period from the first sixth of the oscillation to the last.
         change: f64,
+    },
+    /// A number that no machine has: a unit is likely to be wrong.
+    Implausible {
+        /// The number with its unit.
+        number: String,
+        /// The unit that would make it plausible, as a sentence.
+        remedy: String,
     },
     /// The amplitude does not fall.
     NoDecay,
@@ -333,6 +341,7 @@ impl fmt::Display for Warning {
                  the spring (law + cubic spring, or law + stop), or use a part of smaller amplitude",
                 100.0 * change
             ),
+            Self::Implausible { number, remedy } => write!(f, "no machine has {number}: {remedy}"),
             Self::NoDecay => write!(f, "the amplitude does not fall: there is no dissipation to identify"),
             Self::FewHalfSwings { count } => write!(
                 f,

@@ -26,6 +26,7 @@ impl Warning {
         match self {
             Self::StructuredResiduals { .. }
             | Self::PeriodDependsOnAmplitude { .. }
+            | Self::Implausible { .. }
             | Self::NoDecay
             | Self::Saturated { .. }
             | Self::OffsetStep { .. }
