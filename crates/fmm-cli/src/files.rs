@@ -1,9 +1,13 @@
 //! Files: their text, the documents in them, and folders, with errors that name the path.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Display;
-use std::path::Path;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
+use fmm_record::{DataFile, Reader, RecordError};
 use serde::de::DeserializeOwned;
 
 /// Puts the path of a file before an error.
@@ -16,9 +20,42 @@ pub(crate) fn name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// Bytes of a file.
+/// Bytes of a file; those of a pipe, or of standard input where the path is `-`, are read once and kept.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+    static KEPT: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
+    let cannot = |error| format!("cannot read {}: {error}", path.display());
+    if is_file(path) {
+        return std::fs::read(path).map_err(cannot);
+    }
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(bytes) = kept.get(path) {
+        return Ok(bytes.clone());
+    }
+    let mut bytes = Vec::new();
+    if path == Path::new("-") {
+        std::io::stdin().read_to_end(&mut bytes).map_err(cannot)?;
+    } else {
+        bytes = std::fs::read(path).map_err(cannot)?;
+    }
+    kept.insert(path.to_owned(), bytes.clone());
+    Ok(bytes)
+}
+
+/// True unless the path is one of a pipe or of standard input.
+fn is_file(path: &Path) -> bool {
+    path.is_file() || (!path.exists() && path != Path::new("-"))
+}
+
+/// A file of measured channels, which may come out of a pipe.
+pub(crate) fn open(reader: &Reader, path: &Path) -> Result<DataFile, RecordError> {
+    if is_file(path) {
+        return reader.open(path);
+    }
+    let read = bytes(path).map_err(|error| RecordError::Io {
+        what: format!("read {}", path.display()),
+        source: Arc::new(std::io::Error::other(error)),
+    });
+    reader.parse(read?)
 }
 
 /// Text of a file.

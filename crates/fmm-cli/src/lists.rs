@@ -44,12 +44,15 @@ pub(crate) fn laws(json: bool) -> Result<(), Box<dyn Error>> {
 }
 
 /// Names of the formats and what they are.
-const FORMATS: [(&str, &str); 5] = [
+const FORMATS: [(&str, &str); 8] = [
     (
         "text",
-        "columns of numbers with or without a header: CSV, TSV, LVM and the like; any separator, decimal points or commas",
+        "columns of numbers with or without a header: CSV, TSV, LVM and the like; any separator, decimal points or commas, UTF-8 or UTF-16",
     ),
-    ("matlab", "MATLAB 5 to 7 (.mat), and 7.3, which is HDF5"),
+    ("workbook", "sheets of XLS, XLSX, XLSB, ODS"),
+    ("json", "JSON: arrays, lists of rows, one object a line (.json, .jsonl)"),
+    ("wav", "sound (.wav), whole numbers as they are stored"),
+    ("matlab", "MATLAB 4 to 7 (.mat), and 7.3, which is HDF5"),
     ("hdf5", "HDF5 (.h5)"),
     ("numpy", "NumPy (.npy, .npz)"),
     ("universal", "Universal File, data sets 58 and 58b (.uff, .unv, .58)"),
@@ -63,7 +66,7 @@ pub(crate) fn formats(json: bool) -> Result<(), Box<dyn Error>> {
     }
     let lines = FORMATS.map(|(name, files)| format!("{name:<10} {files}\n"));
     print(format_args!(
-        "A format is told by what a file begins with, whatever its name.\n\n{}\n\
+        "A format is told by what a file begins with, whatever its name; gzip may compress it.\n\n{}\n\
          A channel is chosen by its name, its number or its quantity; `fmm identify FILE` says what was found in a file and what must be said.",
         lines.concat()
     ))

@@ -49,14 +49,20 @@ impl Manifest {
     }
 
     fn of_csv(text: &str) -> Result<Self, String> {
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+        // Spreadsheets in many countries save semicolons, others tabs.
+        let head = text.lines().next().unwrap_or_default();
+        let delimiter = [b';', b'\t'].into_iter().find(|sign| head.as_bytes().contains(sign)).unwrap_or(b',');
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut reader =
+            csv::ReaderBuilder::new().delimiter(delimiter).trim(csv::Trim::All).from_reader(text.as_bytes());
         let columns: Vec<String> =
             reader.headers().map_err(|error| error.to_string())?.iter().map(str::to_owned).collect();
         if !columns.iter().any(|column| column == FILE) {
             return Err(format!("there is no column `{FILE}`; there are {}", columns.join(", ")));
         }
         let line = |line: Result<csv::StringRecord, csv::Error>| {
-            line.map(|line| line.iter().map(str::to_owned).collect()).map_err(|error| error.to_string())
+            line.map(|line| line.iter().map(|cell| with_point(cell, delimiter)).collect())
+                .map_err(|error| error.to_string())
         };
         let records = reader.records().map(line).collect::<Result<_, _>>()?;
         Ok(Self { columns, records, group: None, sheet: None })
@@ -114,6 +120,12 @@ impl Manifest {
         let records = records.iter().map(|record| columns.iter().map(|column| value(record, column)).collect());
         Ok(Self { records: records.collect(), group: group.map(|(column, _)| column), columns, sheet })
     }
+}
+
+/// A cell with a decimal point in place of the decimal comma that a number beside semicolons may have.
+fn with_point(cell: &str, delimiter: u8) -> String {
+    let point = cell.replacen(',', ".", 1);
+    if delimiter != b',' && point.parse::<f64>().is_ok() { point } else { cell.to_owned() }
 }
 
 /// True for a manifest in TOML: by its ending, or else by its first line that is not empty.

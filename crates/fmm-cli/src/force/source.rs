@@ -5,9 +5,10 @@ use std::path::Path;
 
 use clap::Args;
 use fmm_identify::ForceRecord;
-use fmm_record::{Column, DataFile, Label, Quantity, Reader, RecordError, WrittenUnit};
+use fmm_record::{Column, DataFile, Label, Quantity, RecordError, WrittenUnit};
 
-use crate::files::named;
+use crate::files::{self, named};
+use crate::input::Layout;
 
 /// Columns of a table by their meaning.
 #[derive(Debug, Clone, Args)]
@@ -44,6 +45,8 @@ pub(crate) struct Source {
     /// speed
     #[arg(long, value_name = "SPEED")]
     rest_speed: Option<f64>,
+    #[command(flatten)]
+    layout: Layout,
 }
 
 /// Meaning of a column.
@@ -120,8 +123,8 @@ impl Source {
     pub(crate) fn read(&self, path: &Path) -> Result<ForceRecord, Box<dyn Error>> {
         // Numbered samples stand for the clock, so that the times are a column like any other and their steps may
         // differ.
-        let reader = Reader::default().rate(1.0);
-        let (file, head) = (reader.open(path)?, reader.to(0.0).open(path)?);
+        let reader = self.layout.reader().rate(1.0);
+        let (file, head) = (files::open(&reader, path)?, files::open(&reader.to(0.0), path)?);
         self.record(&file, &head).map_err(|error| named(path)(error).into())
     }
 

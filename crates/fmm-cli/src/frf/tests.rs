@@ -11,6 +11,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::analysis::{Analysis, Window};
 use super::trials::{Channels, Trial};
+use crate::input::Layout;
 
 const ACCELERATION: Channels = Channels {
     force: None,
@@ -19,6 +20,7 @@ const ACCELERATION: Channels = Channels {
     force_scale: None,
     response_scale: None,
     rate: None,
+    layout: Layout { skip: 0, table: None, repair: false },
 };
 
 const VELOCITY: Channels = Channels { quantity: Some(Quantity::Velocity), ..ACCELERATION };

@@ -4,10 +4,10 @@ use std::error::Error;
 use std::path::Path;
 
 use clap::Args;
-use fmm_record::{Channel, Column, Label, Quantity, Reader, Reading, Record};
+use fmm_record::{Channel, Column, Label, Quantity, Reading, Record};
 
 use crate::files;
-use crate::input::{is_motion, motion};
+use crate::input::{Layout, in_options, is_motion, motion};
 
 /// One blow.
 pub(crate) struct Trial {
@@ -42,16 +42,18 @@ pub(crate) struct Channels {
     /// The sampling rate, if there is no time channel
     #[arg(long, value_name = "HZ")]
     pub(crate) rate: Option<f64>,
+    #[command(flatten)]
+    pub(crate) layout: Layout,
 }
 
 impl Channels {
     /// Reads the two channels of a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Trial, Box<dyn Error>> {
-        let mut reader = Reader::default();
+        let mut reader = self.layout.reader();
         if let Some(rate) = self.rate {
             reader = reader.rate(rate);
         }
-        let file = reader.open(path)?;
+        let file = files::open(&reader, path)?;
         let (force, response, quantity) = self.channels(&file.channels()?)?;
         let (force, response) = (file.channel(force)?, file.channel(response)?);
         let origin = format!("{} and {}; the sampling rate was {}", force.channel, response.channel, force.sampling);
@@ -60,7 +62,7 @@ impl Channels {
             origin,
             force: in_si(&force, Quantity::Force, self.force_scale, "--force-scale")?,
             response: in_si(&response, quantity, self.response_scale, "--response-scale")?,
-            warnings: file.warnings(),
+            warnings: file.warnings().iter().chain(&force.remarks).map(|remark| in_options(remark)).collect(),
         })
     }
 

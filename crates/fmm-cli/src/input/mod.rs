@@ -17,12 +17,13 @@ use fmm_record::Record;
 use crate::files;
 pub(crate) use question::{Held, Question};
 use source::BUNDLED;
-pub(crate) use source::{Choice, Input, is_motion, motion, motion_called};
+pub(crate) use source::{Choice, Input, Layout, in_options, is_motion, motion, motion_called};
 
 /// File, channel, and measured quantity.
 #[derive(Debug, Args)]
 pub(crate) struct Given {
-    /// The record, in a format that `fmm formats` lists; without it, the bundled record of a bicycle fork
+    /// The record, in a format that `fmm formats` lists, or - for standard input; without it, the bundled record of a
+    /// bicycle fork
     pub(crate) file: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) choice: Choice,

@@ -3,9 +3,11 @@
 use std::error::Error;
 use std::path::Path;
 
-use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use fmm_record::{Column, DataFile, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit};
+use clap::{ArgAction, Args};
+use fmm_record::{
+    Column, DataFile, Format, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit,
+};
 
 use crate::files;
 
@@ -28,6 +30,31 @@ impl Input {
     }
 }
 
+/// Layout of a file, where the table is not all of it.
+#[derive(Debug, Default, Clone, Args)]
+pub(crate) struct Layout {
+    /// Pass over the first lines of a text
+    #[arg(long, value_name = "LINES", default_value_t = 0)]
+    pub(crate) skip: u64,
+    /// The table in the file, counted from 1: a sheet of a workbook, a segment of LabVIEW, a table below another
+    #[arg(long, value_name = "N")]
+    pub(crate) table: Option<usize>,
+    /// Use the text around damaged lines: those at its ends are left out, straight lines stand for those inside
+    // A manifest states it as `true`.
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", default_value_t = false)]
+    #[arg(action = ArgAction::Set, hide_possible_values = true, hide_default_value = true)]
+    pub(crate) repair: bool,
+}
+
+impl Layout {
+    /// A reader of files of this layout.
+    pub(crate) fn reader(&self) -> Reader {
+        let reader = Reader::default().skip(self.skip);
+        let reader = if self.repair { reader.repair() } else { reader };
+        self.table.map_or(reader.clone(), |table| reader.table(table))
+    }
+}
+
 /// Channel, quantity and unit, as far as the user says them; the rest is found in the file.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Choice {
@@ -42,6 +69,11 @@ pub(crate) struct Choice {
     /// The sampling rate, if there is no time channel
     #[arg(long, value_name = "HZ")]
     pub(crate) rate: Option<f64>,
+    /// Unit of the times, such as ms, if their name does not tell it or tells another
+    #[arg(long, value_name = "UNIT", conflicts_with = "rate")]
+    pub(crate) time_unit: Option<String>,
+    #[command(flatten)]
+    pub(crate) layout: Layout,
     /// Quantity of the channel; found by its unit, as in "v [mm/s]" or "theta_rad", or by a word in its name
     #[arg(long, value_parser = motion())]
     pub(crate) quantity: Option<Quantity>,
@@ -90,6 +122,12 @@ pub(crate) fn motion() -> impl TypedValueParser<Value = Quantity> {
 pub(super) const BUNDLED: (&str, &[u8]) =
     ("BrowserForkCompoundFirst1.mat", include_bytes!("../../data/BrowserForkCompoundFirst1.mat"));
 
+/// A sentence in the words of the options: the statement `unit` of a request or a reader is --unit here.
+pub(crate) fn in_options(sentence: &str) -> String {
+    let parts = sentence.split('`').enumerate();
+    parts.flat_map(|(i, part)| [if i % 2 == 0 { "" } else { "--" }, part]).collect()
+}
+
 impl Choice {
     /// Quantity, unit and scale of the channel.
     fn request(&self) -> Request {
@@ -120,8 +158,9 @@ impl Choice {
         if path.is_dir() {
             return Err(format!("{} is a folder; `fmm batch` takes the records in one", path.display()).into());
         }
-        let (reading, file) = self.reading(|reader| reader.open(path))?;
-        let mut warnings = file.warnings();
+        let (reading, file) = self.reading(|reader| files::open(reader, path))?;
+        let mut warnings: Vec<String> =
+            file.warnings().iter().chain(&reading.remarks).map(|remark| in_options(remark)).collect();
         warnings.extend(self.other_rate(path, &reading));
         self.input(path, &Label::from(&reading), &reading, warnings)
     }
@@ -131,14 +170,15 @@ impl Choice {
         /// Relative difference that counts as one.
         const OTHER: f64 = 1e-3;
         let rate = self.rate?;
-        let file = self.cut(Reader::default()).open(path).ok()?;
+        let file = files::open(&self.reader(), path).ok()?;
         let stated = file.channel(reading.channel.as_str()).ok()?.record.rate();
         let is_other = (stated / rate - 1.0).abs() > OTHER;
         is_other.then(|| format!("the {rate} Hz of --rate were taken, though the file says {stated} Hz"))
     }
 
-    /// The reader of the part that is used.
-    fn cut(&self, reader: Reader) -> Reader {
+    /// The reader of the part that is used, without its clock.
+    fn reader(&self) -> Reader {
+        let reader = self.layout.reader();
         let reader = self.from.map_or(reader.clone(), |from| reader.from(from));
         self.to.map_or(reader.clone(), |to| reader.to(to))
     }
@@ -148,7 +188,10 @@ impl Choice {
         &self,
         open: impl FnOnce(&Reader) -> Result<DataFile, RecordError>,
     ) -> Result<(Reading, DataFile), Box<dyn Error>> {
-        let mut reader = self.cut(Reader::default());
+        let mut reader = self.reader();
+        if let Some(unit) = &self.time_unit {
+            reader = reader.time_unit(unit);
+        }
         if let Some(time) = &self.time {
             reader = reader.time(time.clone());
         }
@@ -161,7 +204,14 @@ impl Choice {
             None => file.choose(&self.request()),
         };
         let reading = reading.map_err(|error| match error {
-            RecordError::TimeAxis { .. } => format!("{error}; here the rate is --rate and the time is --time").into(),
+            RecordError::TimeAxis { .. } => format!(
+                "{error}; here the rate is --rate, the time is --time, its unit is --time-unit, and --from and --to cut the record"
+            )
+            .into(),
+            RecordError::Damaged { line: Some(_), .. } if file.format() != Format::Universal => format!(
+                "{error}; --repair uses the record around damaged lines, and --skip passes over lines above the table"
+            )
+            .into(),
             error => self.with_remedy(error),
         })?;
         Ok((reading, file))
@@ -197,12 +247,7 @@ impl Choice {
             return error.into();
         };
         match &error {
-            _ if !self.is_drive => {
-                // A statement of a request is an option here: `unit` is --unit.
-                let parts = remedy.split('`').enumerate();
-                let remedy: String = parts.flat_map(|(i, part)| [if i % 2 == 0 { "" } else { "--" }, part]).collect();
-                format!("{error}; {remedy}").into()
-            }
+            _ if !self.is_drive => format!("{error}; {}", in_options(remedy)).into(),
             // The options speak of the motion.
             RecordError::Contradiction { .. } => format!("{error}; name another channel").into(),
             _ => format!("{error}; write the unit into the name of the channel, as in \"base [m/s^2]\"").into(),

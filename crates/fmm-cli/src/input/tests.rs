@@ -173,3 +173,27 @@ fn a_wrong_time_names_the_options() {
     assert!(refused.contains("time stamp 2 is 3 s") && refused.contains("the rate is --rate"), "{refused}");
     assert_eq!(read(&Choice { rate: Some(1.0), ..Choice::default() }, &path).record.rate(), 1.0);
 }
+
+#[test]
+fn remarks_name_options_that_exist() {
+    let path = file("parts.csv");
+    std::fs::write(&path, "t [s],v [m/s]\n0,1\n1,2\n2,3\nt [s],v [m/s]\n0,4\n1,5\n2,6\n").unwrap();
+    let input = Choice::default().read(&path).unwrap();
+    assert!(input.warnings[0].ends_with("which has 3 of 6 samples; --table chooses another"), "{:?}", input.warnings);
+    std::fs::write(&path, "t [s],v [m/s]\n0,1\n1,x\n2,3\n").unwrap();
+    let refused = refusal(&Choice::default(), &path);
+    assert!(refused.starts_with("line 3, column \"v [m/s]\": \"x\" is not a number; --repair uses"), "{refused}");
+}
+
+#[test]
+fn all_formats_are_compiled() {
+    let object = file("table.json");
+    std::fs::write(&object, r#"{"time": [0, 1, 2], "velocity": [1, 2, 3], "unit": "m/s"}"#).unwrap();
+    assert_eq!(found(&read(&Choice::default(), &object)), (Quantity::Velocity, "m/s", 1.0));
+    for (begin, word) in [(&b"RIFF\0\0\0\0WAVE"[..], "WAV"), (b"PK\x03\x04xl/", "workbook"), (b"\x1F\x8B\x08", "gzip")]
+    {
+        std::fs::write(&object, begin).unwrap();
+        let refused = refusal(&Choice::default(), &object);
+        assert!(refused.contains(word) && !refused.contains("feature"), "{refused}");
+    }
+}
