@@ -109,7 +109,9 @@ impl Clock {
             Written::Nothing if is_vague && self.counts(times) => return Err(counter(name, times)),
             Written::Nothing if are_days(times) => {
                 let first = times[0];
-                times.iter_mut().for_each(|time| *time = DAY * (*time - first));
+                for time in times.iter_mut() {
+                    *time = DAY * (*time - first);
+                }
                 return Ok(Sampling::Days { name: name.into(), first });
             }
             Written::Seconds(scale) if *scale != 1.0 => times.iter_mut().for_each(|time| *time *= scale),

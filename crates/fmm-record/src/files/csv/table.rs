@@ -290,8 +290,8 @@ impl<const N: usize> Rows<N> {
                 }
                 let (before, behind) = (column[first - 1], column[last + 1]);
                 let steps = (last - first + 2) as f64;
-                for row in first..=last {
-                    column[row] = before + (behind - before) * (row + 1 - first) as f64 / steps;
+                for (step, value) in column[first..=last].iter_mut().enumerate() {
+                    *value = before + (behind - before) * (step + 1) as f64 / steps;
                 }
             }
         }

@@ -40,7 +40,9 @@ mod tests {
         let mut bytes = std::io::Cursor::new(Vec::new());
         let spec = WavSpec { channels: 2, sample_rate: 500, bits_per_sample: 16, sample_format: SampleFormat::Int };
         let mut writer = WavWriter::new(&mut bytes, spec).unwrap();
-        [7_i16, 1, -488, 2, 32_767, 3].into_iter().for_each(|sample| writer.write_sample(sample).unwrap());
+        for sample in [7_i16, 1, -488, 2, 32_767, 3] {
+            writer.write_sample(sample).unwrap();
+        }
         writer.finalize().unwrap();
         let file = Reader::default().parse(bytes.into_inner()).unwrap();
         let reading = file.channel("channel 1").unwrap();
