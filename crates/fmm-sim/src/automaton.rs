@@ -455,7 +455,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
 /// `usual` time.
 fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
     const STEPS: (f64, f64) = (64.0, 4096.0);
-    let step = (0.25 * usual).clamp(span / STEPS.1, span / STEPS.0);
+    // Where the levels are equal, the least time is left, and a part of it is none.
+    let step = (0.25 * usual).clamp(span / STEPS.1, span / STEPS.0).max(f64::MIN_POSITIVE);
     // It may begin below zero by rounding.
     let mut after = step;
     while after < span && reserve(after) >= 0.0 {

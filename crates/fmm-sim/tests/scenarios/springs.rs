@@ -148,6 +148,22 @@ fn turning_points_follow_from_energy() {
     }
 }
 
+/// Two branches of one level are Coulomb friction on a bent spring too: no steady speed lies between them.
+#[test]
+fn branches_of_one_level_are_coulomb_friction() {
+    let sampling = Sampling::uniform(0.05, 201).unwrap();
+    for (cubic, quintic) in [(0.0, 0.0), (3.0, 0.0), (-0.8, 0.0), (-2.0, 4.0)] {
+        let machine = machine(cubic, quintic);
+        let one = Scenario::new(machine, Coulomb::new(1.3).unwrap(), 1.0).unwrap();
+        let one = simulate(&one.starting_at(0.7, 0.0).unwrap(), &sampling).unwrap();
+        let two = Scenario::new(machine, AccelerationCoulomb::new(1.3, 1.3).unwrap(), 1.0).unwrap();
+        let two = simulate(&two.starting_at(0.7, 0.0).unwrap(), &sampling).unwrap();
+        for (one, two) in one.position().values().iter().zip(two.position().values()) {
+            assert!((one - two).abs() < 1e-9, "{cubic} {quintic}: {one} {two}");
+        }
+    }
+}
+
 /// Derivatives by both numbers of a spring, through the reversals, against differences: of k₃ and k₅, of where a stop
 /// is and how stiff; under friction that has one level, and one that depends on whether the speed grows.
 #[test]
