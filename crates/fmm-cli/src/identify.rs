@@ -21,6 +21,17 @@ use fmm_identify::{Candidate, Comparison, Drive, Experiment, FrictionCurve, Impa
 use fmm_record::{Column, Quantity, Record};
 use serde::Serialize;
 
+/// Group of the options by which a machine is driven, of which a record has one at most.
+const DRIVE: &str = "drive";
+
+/// Names of the options by which a machine is driven.
+pub(crate) fn drives() -> Vec<String> {
+    let mut command = Arguments::augment_args(clap::Command::new("identify"));
+    command.build();
+    let drives = command.get_groups().filter(|group| group.get_id() == DRIVE).flat_map(clap::ArgGroup::get_args);
+    drives.map(clap::Id::to_string).collect()
+}
+
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -30,14 +41,14 @@ pub(crate) struct Arguments {
     question: Question,
     /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates
     /// freely. Without mass and stiffness, both are found
-    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "base")]
+    #[arg(long, value_name = "NAME|INDEX", group = DRIVE)]
     force: Option<Column>,
     /// The channel with the measured motion of the base that drives the machine, best its acceleration
-    #[arg(long, value_name = "NAME|INDEX")]
+    #[arg(long, value_name = "NAME|INDEX", group = DRIVE)]
     base: Option<Column>,
     /// The channel with the force (N) of a hammer whose impact the machine answers. With --mass and --stiffness
     /// friction is found, without them mass and stiffness as well
-    #[arg(long, value_name = "NAME|INDEX", conflicts_with_all = ["force", "base"])]
+    #[arg(long, value_name = "NAME|INDEX", group = DRIVE)]
     impact: Option<Column>,
     /// Fit the lines of the mobility between two frequencies (Hz) in place of the motion after the impact
     #[arg(long, value_name = "LOW,HIGH", requires = "impact", value_parser = band)]

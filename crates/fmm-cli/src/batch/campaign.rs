@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::{FILE, Manifest};
 use super::sheet::Sheet;
 use crate::files::{self, create_folder, named};
+use crate::identify::drives;
 use crate::input::{Given, Input, Question};
 
 /// The records of a campaign, in their order.
@@ -183,7 +184,7 @@ impl RecordOptions {
 /// Refuses a column that is meant for an option of `fmm identify` by which the machine is driven: its record would be
 /// fitted as a free vibration.
 fn refuse_drive(column: &str) -> Result<(), String> {
-    let Some(option) = ["force", "base"].into_iter().find(|option| is_meant(column, option)) else { return Ok(()) };
+    let Some(option) = drives().into_iter().find(|option| is_meant(column, option)) else { return Ok(()) };
     Err(format!(
         "column `{column}` is meant for --{option}, but a campaign is of free vibrations; identify a driven record by \
          `fmm identify FILE --{option} NAME`, or call the column otherwise if it only describes the records"
@@ -238,7 +239,8 @@ mod tests {
 
     #[test]
     fn a_drive_is_refused() {
-        for (column, option) in [("force", "force"), ("Force [N]", "force"), ("forces", "force"), ("base", "base")] {
+        let columns = [("force", "force"), ("Force [N]", "force"), ("forces", "force"), ("base", "base")];
+        for (column, option) in columns.into_iter().chain([("impact", "impact"), ("Impact (N)", "impact")]) {
             let refused = refuse_drive(column).unwrap_err();
             assert!(refused.starts_with(&format!("column `{column}` is meant for --{option}, but")), "{refused}");
         }
