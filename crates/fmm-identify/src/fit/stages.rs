@@ -99,9 +99,7 @@ fn fit_by_own(
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     match begin {
-        Begin::From(starts) if !problem.has_spring() => {
-            fit_from(&problem.clone().bending_in_sight(), starts, options, observer)
-        }
+        Begin::From(starts) => fit_from(&problem.clone().bending_in_sight(), starts, options, observer),
         _ => fit_in_stages(problem, options, observer),
     }
 }

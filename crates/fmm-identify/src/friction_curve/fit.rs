@@ -51,7 +51,7 @@ pub(super) struct Levelled<'a> {
     pub(super) top: f64,
     /// Mean friction over the path.
     pub(super) scale: f64,
-    /// The fit by Coulomb and viscous friction.
+    /// The fit by Coulomb and viscous friction, with the same terms beside it.
     pub(super) line: Vec<f64>,
 }
 
@@ -101,10 +101,6 @@ impl CurveFit {
             return Err(not_settled());
         }
         let path = Path::of(problem, &values).map_err(failure)?;
-        let residual = (near.sum_of_squares() / problem.len() as f64).sqrt();
-        let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
-        let ratio = residual / expected.fold(f64::MIN_POSITIVE, f64::max);
-        let is_correlated = autocorrelation_time(near.residuals()).is_some_and(|time| time > CORRELATION_TIME);
         Ok(Self {
             top,
             scale,
@@ -113,7 +109,7 @@ impl CurveFit {
             frequency: values[0],
             path: path.weights(top),
             slowest: path.slowest,
-            excess: (ratio > EXCESS && is_correlated).then_some(ratio),
+            excess: near.excess(problem),
         })
     }
 }
@@ -244,6 +240,19 @@ impl Path {
 }
 
 impl Linearised {
+    /// Residual over noise, if it is too large and no noise.
+    pub(super) fn excess(&self, problem: &Problem<'_>) -> Option<f64> {
+        let residual = (self.sum_of_squares() / problem.len() as f64).sqrt();
+        let expected = scaled(problem.experiments()).map(|(one, weight)| weight * one.least_noise());
+        let ratio = residual / expected.fold(f64::MIN_POSITIVE, f64::max);
+        (ratio > EXCESS && self.correlation() > CORRELATION_TIME).then_some(ratio)
+    }
+
+    /// Correlation time of the residuals of the records (1).
+    pub(super) fn correlation(&self) -> f64 {
+        autocorrelation_time(self.residuals()).unwrap_or(1.0)
+    }
+
     /// Likelihood and posterior near the values `p`, relative to `scale`.
     fn posterior(
         &self,

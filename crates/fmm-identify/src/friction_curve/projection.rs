@@ -1,8 +1,10 @@
 //! Laws projected on the friction over the speed that records show: their misfit, and where a fit by them begins.
 
+use std::ops::Range;
+
 use fmm_fit::{Estimate, EvaluationError, Options, Residuals, solve};
 use fmm_friction::CoulombViscous;
-use fmm_model::Parameter;
+use fmm_model::{Bounds, Parameter, Restoring};
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidate::Candidate;
@@ -10,12 +12,13 @@ use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::friction_curve::fit::{Levelled, Settled};
 use crate::friction_curve::levels::{KNOTS, LEVELS};
-use crate::friction_curve::rules::{ENOUGH, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION};
+use crate::friction_curve::rules::{ENOUGH, EXPLAINED, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION};
 use crate::machine::term::Term;
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
 use crate::problem::starts::Fitted;
 use crate::quantities::table::Table;
+use crate::threads::on_all_threads;
 
 /// Friction over the speed as records show it near one curve, without a law.
 ///
@@ -26,15 +29,20 @@ use crate::quantities::table::Table;
 /// b(θ) are the levels of a law, b̂ those that fit best, Λ their precision with all else integrated out. D is the
 /// misfit of the law beside the best curve of all, as a fit to the records would have it, without a simulation.
 pub(crate) struct ShownFriction {
+    /// Terms beside it: a bent spring, and a change during the records.
+    pub(crate) terms: Terms,
+    /// The residuals beside it are no noise.
+    pub(crate) is_structured: bool,
     top: f64,
-    /// Names of all parameters of the curve's problem, and the first level among them.
+    /// Names of all parameters of the curve's problem, those of the terms beside the curve, and the first level.
     names: Vec<String>,
+    beside: Range<usize>,
     first: usize,
     settled: Settled,
     /// R with RᵀR = Λ, and R b̂.
     root: DMatrix<f64>,
     best: DVector<f64>,
-    /// Fit by Coulomb and viscous friction.
+    /// Fit by Coulomb and viscous friction, with the same terms.
     line: Vec<f64>,
 }
 
@@ -50,12 +58,14 @@ pub(crate) struct Projected {
 }
 
 impl ShownFriction {
-    /// The friction over the speed that `experiments` on `machine` share.
-    pub(crate) fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        let Levelled { problem, values, top, scale, line, .. } = Levelled::of(machine, &Terms::NONE, experiments)?;
+    /// The friction over the speed that `experiments` on `machine` share, with `terms` beside it.
+    pub(crate) fn of(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+        let Levelled { problem, values, top, scale, line, .. } = Levelled::of(machine, &terms, experiments)?;
         let thinned = problem.thinned();
         let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
-        let settled = Settled::of(few.as_ref().unwrap_or(&problem), values, scale, MOST_STEPS_OF_PROJECTION)?;
+        let seen = few.as_ref().unwrap_or(&problem);
+        let settled = Settled::of(seen, values, scale, MOST_STEPS_OF_PROJECTION)?;
+        let is_structured = settled.near.excess(seen).is_some();
         let eigen = settled.likelihood.precision.clone().symmetric_eigen();
         let least = LOST * eigen.eigenvalues.max();
         let roots = eigen.eigenvalues.map(|value| if value > least { value.sqrt() } else { 0.0 });
@@ -63,7 +73,38 @@ impl ShownFriction {
         let best = inverse.component_mul(&eigen.eigenvectors.tr_mul(&settled.likelihood.information));
         let root = DMatrix::from_diagonal(&roots) * eigen.eigenvectors.transpose();
         let names = problem.parameters().iter().map(|parameter| parameter.name().to_owned()).collect();
-        Ok(Self { top, names, first: problem.table.law, settled, root, best, line })
+        let (first, beside) = (problem.table.law, problem.table.oscillator..problem.table.law);
+        Ok(Self { terms, is_structured, top, names, beside, first, settled, root, best, line })
+    }
+
+    /// The same with what else acts: one after the other the term that explains most of the residuals, as long as these
+    /// are no noise and it explains enough of them; `None` if nothing does.
+    pub(crate) fn beside(&self, machine: &Machine, experiments: &[Experiment]) -> Option<Self> {
+        let mut found: Option<Self> = None;
+        loop {
+            let shown = found.as_ref().unwrap_or(self);
+            let has = |term: Term| shown.terms.has(term);
+            let spring = if has(Term::CubicSpring) { Term::QuinticSpring } else { Term::CubicSpring };
+            let further = [spring, Term::Change].into_iter().filter(|term| {
+                let is_known = term.is_spring() && machine.restoring() != Restoring::Linear;
+                !has(*term) && !is_known
+            });
+            let with = |term: Term| Self::of(machine, shown.terms.clone().with(term), experiments).ok();
+            let gain = |further: &Self| further.gain(shown);
+            let further = if shown.is_structured { on_all_threads(further.collect(), with) } else { Vec::new() };
+            let best = further.into_iter().flatten().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+            match best.filter(|best| gain(best) > EXPLAINED) {
+                Some(best) => found = Some(best),
+                None => return found,
+            }
+        }
+    }
+
+    /// Fall of −2 ln L beside `other`, for as many residuals as are independent (1).
+    fn gain(&self, other: &Self) -> f64 {
+        let near = |one: &Self| one.settled.near.sum_of_squares();
+        let independent = self.settled.near.residuals().len() as f64 / self.settled.near.correlation().max(1.0);
+        independent * (near(other) / near(self)).ln()
     }
 
     /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction
@@ -79,8 +120,14 @@ impl ShownFriction {
         even.map(|one| one.start.clone()).collect()
     }
 
+    /// Place of a parameter of the terms beside the curve; `None` for others.
+    fn beside_place(&self, parameter: &Parameter) -> Option<usize> {
+        let place = self.names.iter().position(|name| name == parameter.name())?;
+        self.beside.contains(&place).then_some(place)
+    }
+
     fn near(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
-        let simple = Candidate::of::<CoulombViscous>();
+        let simple = Candidate::of::<CoulombViscous>().with(self.terms.clone());
         let Ok(simple) = Problem::of(&simple, problem.machine, problem.experiments()) else { return problem.starts() };
         let of_others = |(value, parameter): (&f64, &Parameter)| {
             let mut estimates = others.iter().flat_map(|other| other.fit.estimates());
@@ -90,6 +137,9 @@ impl ShownFriction {
         let near = problem.near(&simple, &self.line).into_iter().map(|mut start| {
             let taken: Vec<f64> = start.iter().zip(problem.parameters()).map(of_others).collect();
             start[shared.clone()].copy_from_slice(&taken[shared.clone()]);
+            for (value, parameter) in start.iter_mut().zip(problem.parameters()) {
+                *value = self.beside_place(parameter).map_or(*value, |place| self.settled.values[place]);
+            }
             problem.clamped(&start)
         });
         near.collect()
@@ -104,9 +154,15 @@ impl ShownFriction {
     /// All ends of that search, the most probable first.
     fn all_projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Projected> {
         let shared = problem.table.oscillator..problem.table.shared;
-        let parameters = &problem.parameters()[shared.clone()];
-        let projection = Projection { shown: self, table: &problem.table, parameters };
         let starts = self.near(problem, others);
+        let mut parameters = problem.parameters()[shared.clone()].to_vec();
+        for parameter in &mut parameters {
+            let known = self.beside_place(parameter).map(|place| self.settled.values[place]);
+            if let Some(bounds) = known.and_then(|value| Bounds::new(value, value).ok()) {
+                *parameter = parameter.clone().bounded(bounds);
+            }
+        }
+        let projection = Projection { shown: self, table: &problem.table, parameters: &parameters };
         let options = Options::default().with_max_iterations(MOST_ITERATIONS).with_cost_tolerance(ENOUGH);
         let options = options.with_polish_steps(0).with_restarts(0).with_jacobian_check(false);
         let shows_all = projection.shows_all(starts.iter().map(|start| &start[shared.clone()]));
@@ -128,7 +184,7 @@ impl ShownFriction {
         let change = DVector::from_fn(LEVELS, |i, _| levels[i] - values[self.first + i]);
         let moved = self.settled.near.moved(values, &self.settled.likelihood.step(&change), 1.0);
         let value = |(place, parameter): (usize, &Parameter)| {
-            if shared.contains(&place) {
+            if shared.contains(&place) && self.beside_place(parameter).is_none() {
                 return of_law[place - shared.start];
             }
             let known = self.names.iter().position(|name| name == parameter.name());
@@ -237,7 +293,7 @@ mod tests {
         let record = Record::new(0.0, 2e-3, velocity, Quantity::Velocity, "m/s").unwrap();
         let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
         let machine = Machine::per_unit_mass();
-        let shown = ShownFriction::of(&machine, &decays).unwrap();
+        let shown = ShownFriction::of(&machine, Terms::NONE, &decays).unwrap();
         let problem = |candidate| Problem::of(&candidate, machine, &decays).unwrap();
         let own = problem(Candidate::of::<Stribeck>().holding("exponent", 2.0).unwrap());
         let projected = shown.projected(&own, &[]).unwrap();

@@ -133,7 +133,7 @@ pub(crate) fn score_tests(
         let of_law = [friction, friction / (STEP * length), 1.0];
         changes.push((Extension::Presliding, residuals(&dahl, &of_law)));
     }
-    if machine.restoring() == Restoring::Linear {
+    if machine.restoring() == Restoring::Linear && !base.fitted.model.terms.has_spring() {
         let softened = |length: f64| -> Result<_, ModelError> { Ok(machine.with_restoring(Restoring::sine(length)?)) };
         // The sine of x/L loses x²/6L² of the stiffness.
         let softened = softened(length / (6.0 * STEP).sqrt())?;
@@ -153,13 +153,16 @@ pub(crate) fn score_tests(
     Ok((tests, warnings))
 }
 
-/// True for Coulomb and viscous friction, be it steady or not.
+/// True for Coulomb and viscous friction, be it steady or not and the spring straight or not.
 fn is_simple(base: &Identification) -> bool {
+    let terms = &base.fitted.model.terms;
+    let further = || terms.iter().filter(|term| !term.is_spring());
     match base.family().name {
-        CoulombViscous::NAME => base.fitted.model.terms.is_empty(),
+        _ if terms.held().next().is_some() => false,
+        CoulombViscous::NAME => further().next().is_none(),
         Coulomb::NAME => {
             let changing = Terms::NONE.with_linear_damping().with_change();
-            base.fitted.model.terms == changing || base.fitted.model.terms == changing.with_curved_change()
+            further().eq(changing.iter()) || further().eq(changing.with_curved_change().iter())
         }
         _ => false,
     }

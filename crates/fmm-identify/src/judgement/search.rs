@@ -22,7 +22,8 @@ use crate::judgement::rules::{
     MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
-use crate::judgement::trials::{CORNERS, SPRINGS, Trial, beside};
+use crate::judgement::trials::{Trial, with_corners};
+use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::starts::Fitted;
@@ -52,7 +53,7 @@ impl Inquiry<'_> {
     }
 
     fn search_here(&self, decays: &[Experiment]) -> Result<Comparison, IdentifyError> {
-        let run = Run { inquiry: self, decays, options: &self.options, end: self.end() };
+        let run = Run { inquiry: self, decays, beside: &Terms::NONE, options: &self.options, end: self.end() };
         if !self.held.is_empty() {
             self.require_known(decays)?;
         }
@@ -71,7 +72,7 @@ impl Inquiry<'_> {
         let (mut tests, mut left_out) = run.score_tests(&found);
         let changes = found.changes();
         if changes || found.asks_for_more(&tests) {
-            run.fit_further(&mut found, &tests, changes)?;
+            run.fit_further(&mut found, &mut tests, changes)?;
         }
         run.fit_changes(&mut found, Found::preferred)?;
         if self.machine.steadiness().is_some() {
@@ -104,6 +105,8 @@ struct Found {
     failures: Vec<(String, Warning)>,
     /// Names of the laws that the friction over the speed excludes without a fit.
     excluded: Vec<String>,
+    /// Terms that the records ask for beside any friction over the speed.
+    beside: Terms,
     is_cut_short: bool,
 }
 
@@ -177,9 +180,10 @@ impl Found {
         self.preferred().filter(|preferred| preferred.fitted.model.terms.has(Term::Change)).or_else(|| self.simple())
     }
 
-    /// The fit by Coulomb and viscous friction, whatever is held of it; it is among the first.
+    /// The fit by Coulomb and viscous friction, whatever is held of it, with what else acts if there is one.
     fn simple(&self) -> Option<&Identification> {
-        self.identifications.iter().find(|found| found.family().name == CoulombViscous::NAME)
+        let all = || self.identifications.iter().filter(|found| found.family().name == CoulombViscous::NAME);
+        all().find(|found| found.fitted.model.terms.iter().eq(self.beside.iter())).or_else(|| all().next())
     }
 }
 
@@ -210,6 +214,8 @@ impl<'a> Start<'a> {
 struct Run<'a, 'i> {
     inquiry: &'a Inquiry<'i>,
     decays: &'a [Experiment],
+    /// Terms beside every law.
+    beside: &'a Terms,
     options: &'a Options,
     end: Option<Instant>,
 }
@@ -217,7 +223,7 @@ struct Run<'a, 'i> {
 impl Run<'_, '_> {
     /// The candidates of these trials, with the parameters that are held.
     fn candidates(&self, trials: impl IntoIterator<Item = Trial>) -> Result<Vec<Candidate>, IdentifyError> {
-        trials.into_iter().map(|trial| self.inquiry.tried(&trial, self.decays)).collect()
+        trials.into_iter().map(|trial| self.inquiry.tried(&trial.beside(self.beside), self.decays)).collect()
     }
 
     /// Fits the `candidates`. Those that begin where the records say are fitted after the time limit too.
@@ -255,36 +261,44 @@ impl Run<'_, '_> {
         Ok(found)
     }
 
-    /// Adds fits by the laws that the friction over the speed allows; then, where more is asked for, by springs that
-    /// are not linear and by laws with presliding. A simple law `changes` if its friction changes during the records.
-    fn fit_further(&self, found: &mut Found, tests: &[ScoreTest], changes: bool) -> Result<(), IdentifyError> {
+    /// Adds fits by the laws that the friction over the speed allows, beside a spring that bends and a change of the
+    /// friction where the records ask for these whatever the friction; then, where more is asked for, by laws with
+    /// presliding. A simple law `changes` if its friction changes during the records.
+    fn fit_further(&self, found: &mut Found, tests: &mut Vec<ScoreTest>, changes: bool) -> Result<(), IdentifyError> {
         let limited = |most: usize| {
             let options = &self.inquiry.options;
             options.clone().with_max_iterations(most.min(options.max_iterations()))
         };
         let (of_speed, of_state) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
-        let shown = ShownFriction::of(&self.inquiry.machine, self.decays).ok();
-        let of_speed = Run { options: &of_speed, ..*self };
-        let allowed = of_speed.allowed(found, shown.as_ref())?;
-        let further = of_speed.fit(allowed, Start::of(shown.as_ref(), &[]))?;
-        found.add(further);
-        if changes && found.changes() && !found.asks_for_more(tests) {
-            return Ok(());
-        }
-        let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
+        let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, self.decays).ok();
         // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
         // comparison.
-        let is_filtered = || {
+        let is_filtered = |found: &Found| {
             let behind = behind_filter(self.decays, &found.identifications).ok().flatten();
             behind.is_some_and(|(found, _)| !found.structure.is_correlated())
         };
-        if found.is_structured() && tests.iter().any(is_bent) && !is_filtered() {
-            let bent = self.fit(self.candidates(beside(&SPRINGS))?, Start::of(None, &[]))?;
-            found.add(bent);
-            if found.is_structured() {
-                let with_corners = self.fit(self.candidates(beside(&CORNERS))?, Start::Records)?;
-                found.add(with_corners);
-            }
+        let structured = plain.as_ref().filter(|plain| plain.is_structured && !is_filtered(found));
+        let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, self.decays));
+        let shown = further.as_ref().or(plain.as_ref());
+        let beside = shown.map_or(Terms::NONE, |shown| shown.terms.clone());
+        let of_speed = Run { options: &of_speed, beside: &beside, ..*self };
+        if !beside.is_empty() {
+            found.beside = beside.clone();
+            let simple = of_speed.candidates(self.inquiry.at(SearchStage::Simple))?;
+            found.add(of_speed.fit(simple, Start::Further)?);
+            let spring = std::mem::take(tests).into_iter().filter(|test| test.extension == Extension::SofteningSpring);
+            *tests = of_speed.score_tests(found).0.into_iter().chain(spring).collect();
+        }
+        if found.is_structured() && beside.has_spring() {
+            found.add(self.fit(self.candidates(with_corners())?, Start::Records)?);
+        }
+        if !beside.is_empty() && !found.asks_for_more(tests) {
+            return Ok(());
+        }
+        let allowed = of_speed.allowed(found, shown)?;
+        found.add(of_speed.fit(allowed, Start::of(shown, &[]))?);
+        if changes && found.changes() && !found.asks_for_more(tests) {
+            return Ok(());
         }
         // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
         // moves where the machine turns.
@@ -298,15 +312,26 @@ impl Run<'_, '_> {
         };
         if tests.iter().any(is_seen) {
             let of_state = Run { options: &of_state, ..*self };
-            let first = self.inquiry.at(SearchStage::Presliding);
-            let with_state = of_state.fit(of_state.candidates(first)?, Start::of(shown.as_ref(), &[]))?;
-            found.add(with_state);
-            let further = self.inquiry.at(SearchStage::FurtherPresliding);
-            let nearest = closest(found.identifications.iter().filter(|found| preslides(found)));
-            let nearest: Vec<&Fitted> = nearest.iter().map(|found| &found.fitted).collect();
-            let with_state = of_state.fit(of_state.candidates(further)?, Start::of(shown.as_ref(), &nearest))?;
-            found.add(with_state);
+            // A contact that yields is a spring as well, one that softens: alone it may explain what another spring does.
+            if found.is_structured() || beside.is_empty() {
+                of_state.fit_presliding(found, plain.as_ref())?;
+            }
+            if !beside.is_empty() && found.is_structured() {
+                Run { beside: &beside, ..of_state }.fit_presliding(found, shown)?;
+            }
         }
+        Ok(())
+    }
+
+    /// Adds fits by the laws with presliding, the further ones from where the first have ended.
+    fn fit_presliding(&self, found: &mut Found, shown: Option<&ShownFriction>) -> Result<(), IdentifyError> {
+        let first = self.candidates(self.inquiry.at(SearchStage::Presliding))?;
+        found.add(self.fit(first, Start::of(shown, &[]))?);
+        let further = self.candidates(self.inquiry.at(SearchStage::FurtherPresliding))?;
+        let nearest = closest(found.identifications.iter().filter(|found| preslides(found)));
+        let nearest: Vec<&Fitted> = nearest.iter().map(|found| &found.fitted).collect();
+        let with_state = self.fit(further, Start::of(shown, &nearest))?;
+        found.add(with_state);
         Ok(())
     }
 

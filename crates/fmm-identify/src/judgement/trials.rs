@@ -5,6 +5,7 @@ use fmm_friction::{CoulombViscous, FamilyVisitor, LawFamily, SearchRole, SearchS
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
+use crate::judgement::change::with_change;
 use crate::judgement::inquiry::Inquiry;
 use crate::machine::Terms;
 use crate::machine::term::Term;
@@ -36,7 +37,10 @@ impl Inquiry<'_> {
     /// Trials of all stages but that of springs with corners.
     fn all(&self) -> impl Iterator<Item = Trial> {
         let further = [SearchStage::Presliding, SearchStage::FurtherPresliding];
-        let first = self.at(SearchStage::Simple).into_iter().chain(self.of_speed()).chain(beside(&SPRINGS));
+        let bent = Terms::NONE.with(Term::CubicSpring).with(Term::QuinticSpring);
+        let simple = self.at(SearchStage::Simple);
+        let bent: Vec<Trial> = simple.iter().map(|trial| trial.clone().beside(&bent)).collect();
+        let first = simple.into_iter().chain(bent).chain(self.of_speed());
         first.chain(further.into_iter().flat_map(|stage| self.at(stage)))
     }
 
@@ -86,25 +90,16 @@ impl Inquiry<'_> {
     }
 }
 
-/// Trials of a level and a straight line beside each of these lists of terms.
-pub(super) fn beside(terms: &[&[Term]]) -> impl Iterator<Item = Trial> {
-    let with = |terms: &&[Term]| terms.iter().fold(Terms::NONE, |terms, term| terms.with(*term));
-    terms.iter().map(move |terms| Trial { candidate: Candidate::of::<CoulombViscous>().with(with(terms)), fixed: &[] })
+/// Trials of Coulomb and viscous friction on a spring with a stop, a preload or a gap.
+pub(super) fn with_corners() -> [Trial; 2] {
+    let with = |term| Trial { candidate: Candidate::of::<CoulombViscous>().with(Terms::NONE.with(term)), fixed: &[] };
+    [Term::Stop, Term::Gap].map(with)
 }
 
 /// A value that is held of `law`, or of all laws for `None`, is meant for the `candidate`.
 fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
     law.is_none_or(|law| candidate.law_name() == law)
 }
-
-/// Terms beside a level and a straight line: a spring that hardens or softens.
-pub(super) const SPRINGS: [&[Term]; 3] = [
-    &[Term::CubicSpring],
-    &[Term::CubicSpring, Term::QuinticSpring],
-    &[Term::QuadraticDamping, Term::CubicSpring, Term::QuinticSpring],
-];
-/// Springs with a stop, a preload or a gap, tried if a smooth spring leaves correlated residuals.
-pub(super) const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
 
 /// A law family and the trials that it states.
 #[derive(Debug, Clone)]
@@ -133,6 +128,17 @@ impl FamilyVisitor for Families {
 pub(super) struct Trial {
     pub(super) candidate: Candidate,
     fixed: &'static [(&'static str, f64)],
+}
+
+impl Trial {
+    /// The same with `terms` that are no friction over the speed, as far as the law takes them.
+    pub(super) fn beside(self, terms: &Terms) -> Self {
+        let changing = with_change(&self.candidate).filter(|_| terms.has(Term::Change));
+        let candidate = changing.unwrap_or(self.candidate);
+        let spring = terms.iter().filter(|term| term.is_spring());
+        let terms = spring.fold(candidate.terms.clone(), Terms::with);
+        Self { candidate: candidate.with(terms), ..self }
+    }
 }
 
 #[cfg(test)]
@@ -187,6 +193,9 @@ mod tests {
                 "viscous",
                 "coulomb",
                 "coulomb_viscous",
+                "viscous + cubic spring + quintic spring",
+                "coulomb + cubic spring + quintic spring",
+                "coulomb_viscous + cubic spring + quintic spring",
                 "viscous + quadratic",
                 "coulomb + quadratic",
                 "coulomb_viscous + quadratic",
@@ -201,15 +210,12 @@ mod tests {
                 "makkar_dixon",
                 "regularised_stribeck",
                 "karnopp + linear",
-                "coulomb_viscous + cubic spring",
-                "coulomb_viscous + cubic spring + quintic spring",
-                "coulomb_viscous + quadratic + cubic spring + quintic spring",
                 "dahl + linear, exponent = 1",
                 "lugre, exponent = 2",
                 "bouc_wen + linear, amplitude = 1",
             ]
         );
-        assert_eq!(names(beside(&CORNERS)), ["coulomb_viscous + stop", "coulomb_viscous + gap"]);
+        assert_eq!(names(with_corners()), ["coulomb_viscous + stop", "coulomb_viscous + gap"]);
     }
 
     /// A law of one's own is tried at the stage that it states, after those of the catalogue.

@@ -159,8 +159,8 @@ impl Problem<'_> {
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into
     /// the law in as many ways as it offers.
     pub(crate) fn continued(&self, simple: &Problem<'_>, values: &[f64]) -> Vec<Vec<f64>> {
-        let (oscillator, rest) = values.split_at(simple.table.oscillator);
-        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
+        let (oscillator, of_law) = (&values[..simple.table.oscillator], &values[simple.table.of_law()]);
+        let dissipation = Dissipation { friction: of_law[0], damping: of_law[1] };
         // A damper and Coulomb friction lose the same in a swing if F = π/4 c V.
         let as_friction =
             dissipation.friction + 0.25 * PI * dissipation.damping * 0.5 * reference(&self.experiments).scales().1;
@@ -187,8 +187,8 @@ impl Problem<'_> {
         if self.table.oscillator != simple.table.oscillator || !self.is_elaborate() {
             return self.starts();
         }
-        let (oscillator, rest) = values.split_at(simple.table.oscillator);
-        let dissipation = Dissipation { friction: rest[0], damping: rest[1] };
+        let (oscillator, of_law) = (&values[..simple.table.oscillator], &values[simple.table.of_law()]);
+        let dissipation = Dissipation { friction: of_law[0], damping: of_law[1] };
         let falls = if self.law().fitted().any(|parameter| self.law().bends(parameter)) { &FALLS[..] } else { &[0.2] };
         let falling = falls.iter().map(|share| {
             let sharpness = self.law().bend().map_or(1.0, |typical| typical / share);

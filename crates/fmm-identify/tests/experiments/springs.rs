@@ -1,8 +1,8 @@
 //! Springs that harden or soften, and cubic damping, fitted beside the law.
 
-use fmm_friction::{Coulomb, CoulombViscous};
+use fmm_friction::{Coulomb, CoulombViscous, Stribeck};
 use fmm_identify::{
-    Candidate, Experiment, IdentifyError, Inquiry, Machine, Preparation, Terms, Warning, compare, search,
+    Candidate, Experiment, FrictionCurve, IdentifyError, Inquiry, Machine, Preparation, Terms, Warning, compare, search,
 };
 use fmm_model::{Damping, Oscillator, Restoring};
 use fmm_record::Quantity;
@@ -144,6 +144,32 @@ fn the_search_finds_a_stop() {
     let found = search(&Machine::per_unit_mass(), &[decay]).unwrap();
     assert_eq!(found.preferred().law(), "coulomb_viscous + stop", "{found}");
     assert!(!warns(found.preferred().warnings()) && !warns(found.warnings()), "{found}");
+}
+
+/// A spring that bends and friction that falls with the speed are told apart at once: neither is named without the
+/// other, and both come back.
+#[test]
+fn the_search_finds_a_bent_spring_beside_falling_friction() {
+    let spring = Restoring::polynomial(-1.0, 0.0).unwrap();
+    let machine = Oscillator::per_unit_mass(2.0).unwrap().with_restoring(spring);
+    let law = Stribeck::new(1.5, 2.2, 0.3, 2.0, 0.05).unwrap();
+    let scenario = Scenario::new(machine, law, 1.0).unwrap().starting_at(0.3, 0.0).unwrap();
+    let motion = simulate(&scenario, &Sampling::uniform(INTERVAL, 3000).unwrap()).unwrap();
+    let record = record(motion.position().values(), 2e-4, 14, Quantity::Displacement, "rad");
+    let decay = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+    let decays = [decay];
+    let found = search(&Machine::per_unit_mass(), &decays).unwrap();
+    let preferred = found.preferred();
+    assert!(preferred.law().starts_with("stribeck + cubic spring"), "{found}");
+    for (name, truth) in [("sliding_friction_per_mass", 1.5), ("static_friction_per_mass", 2.2), ("cubic_spring", -1.0)]
+    {
+        let finding = preferred.finding(name).unwrap();
+        assert!((finding.value() - truth).abs() < 3.5 * finding.uncertainty().unwrap(), "{name}: {found}");
+    }
+    let curve = FrictionCurve::beside(preferred, &decays).unwrap();
+    assert!(curve.limits().is_empty(), "{curve}");
+    let (low, high) = curve.at_rest().interval(0.95).unwrap();
+    assert!(low < 2.2 && 2.2 < high, "{curve}");
 }
 
 /// Lengths of a spring are uncertain with the gain of the record, ratios are not, and a power of the velocity is by one
