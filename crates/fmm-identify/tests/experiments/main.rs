@@ -10,5 +10,6 @@ mod friction_curve;
 mod impact;
 mod joint;
 mod no_friction;
+mod same_statement;
 mod simulated;
 mod springs;
