@@ -215,7 +215,14 @@ const RATES: &str = "fs rate actualrate samplerate samplingrate samplefrequency 
 
 /// Names of scalars that hold an interval (s), in lower case and without underscores.
 const INTERVALS: &str = "\
-    dt ts deltat deltax xincrement tsample sampletime samplingtime sampleinterval samplinginterval";
+    dt ts deltat deltax increment xincrement tsample sampletime samplingtime sampleinterval samplinginterval";
+
+/// True for the name of a scalar that states a rate or an interval.
+#[cfg(feature = "hdf5")]
+pub(crate) fn is_rate(name: &str) -> bool {
+    let plain = name.replace(['_', ' '], "").to_lowercase();
+    is_in(RATES, &plain) || is_in(INTERVALS, &plain)
+}
 
 /// Largest difference of two statements of the rate, relative.
 const AGREEMENT: f64 = 1e-3;

@@ -246,7 +246,8 @@ impl DataFile {
                     let name = offer.written(file.notation);
                     let is_time = offer.is_called_time() || times.contains(&&name);
                     let rate = reading.as_ref().map(|reading| reading.record.rate());
-                    (!is_time).then(|| Channel { label: Label::of(&name), position, rate })
+                    let label = || Label::of(&name).with_unit(file.unit(&offer.array));
+                    (!is_time).then(|| Channel { label: label(), position, rate })
                 };
                 Ok(offers.iter().zip(&readings).enumerate().filter_map(channel).collect())
             }

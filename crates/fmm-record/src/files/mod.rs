@@ -72,7 +72,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 /// If no column is time, a number above the table that is called an interval or a rate (`Sample Interval`,
 /// `Delta_X`) tells the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
 ///
-/// # MATLAB (versions 5 to 7.3, HDF5) and NumPy (npy, npz)
+/// # MATLAB (versions 4 to 7.3, HDF5) and NumPy (npy, npz)
 ///
 /// A channel is written as the program writes it: `data`, `run.v` for a field of a structure; `m(:,2)` for the second
 /// column of a matrix in MATLAB, `m[:,1]` in NumPy; `m(2,:)` and `m[1]` for the second row. The array of an npy file
@@ -89,7 +89,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 /// 5. a scalar whose name means rate or interval, such as `fs`, `ActualRate`, `sample_rate`, `dt`, `Ts`, in upper or
 ///    lower case.
 ///
-/// Variables of the same structure come before those around it.
+/// Variables of the same structure come before those around it; attributes of HDF5 count like variables. The unit is an
+/// attribute or a text called `unit` or `units` of the array or beside it, `v_unit`, or the label of a quantity of Testlab.
 ///
 /// # Universal Files
 ///

@@ -3,6 +3,8 @@
 use crate::error::RecordError;
 use crate::files::Reader;
 use crate::files::arrays::{Array, Notation, Series, Slice};
+#[cfg(feature = "hdf5")]
+use crate::files::clock::is_rate;
 use crate::files::clock::{Clock, are_whole, stated};
 use crate::files::reading::{Column, Reading, only, without_unit};
 use crate::sampling::{Sampling, uniform_grid};
@@ -13,6 +15,8 @@ pub(crate) struct ArrayFile {
     pub(crate) notation: Notation,
     /// In the order of the file.
     pub(crate) arrays: Vec<Array>,
+    /// Short texts beside the arrays, by their paths: attributes and variables that may be units.
+    pub(crate) texts: Vec<(String, String)>,
     /// Content that was not read: names and kinds.
     pub(crate) others: Vec<(String, String)>,
     /// Content that cannot be read, and the reasons. Without a readable name, the place stands for it, as
@@ -23,12 +27,36 @@ pub(crate) struct ArrayFile {
 impl ArrayFile {
     /// A file in which nothing has been found yet.
     pub(crate) fn new(notation: Notation) -> Self {
-        Self { notation, arrays: Vec::new(), others: Vec::new(), damaged: Vec::new() }
+        Self { notation, arrays: Vec::new(), texts: Vec::new(), others: Vec::new(), damaged: Vec::new() }
     }
 
     /// Adds an array.
     pub(crate) fn add(&mut self, name: String, shape: Vec<usize>, values: Vec<f64>) {
         self.arrays.push(Array { name, shape, values, notation: self.notation });
+    }
+
+    /// Adds a statement beside the arrays: a text that may be a unit, or a number that may be a rate.
+    #[cfg(feature = "hdf5")]
+    pub(crate) fn state(&mut self, path: String, text: Option<&str>, number: Option<f64>) {
+        match (text, number) {
+            (Some(text), _) => self.texts.push((path, text.to_owned())),
+            (None, Some(number)) if is_rate(leaf(&path)) => self.add(path, vec![1, 1], vec![number]),
+            _ => {}
+        }
+    }
+
+    /// The unit that a text beside the array called `name` states: an attribute of it, `name_unit`, or what is called a
+    /// unit in its structure, as in `y_values.quantity.label` of Testlab; empty if there is none.
+    pub(crate) fn unit(&self, name: &str) -> &str {
+        if Clock::of(leaf(name)).is_time {
+            return "";
+        }
+        let within =
+            |key: &str| if parent(name).is_empty() { key.to_owned() } else { format!("{}.{key}", parent(name)) };
+        let own = ["unit", "units"].map(|key| [format!("{name}.{key}"), format!("{name}_{key}")]);
+        let around = ["unit", "units", "quantity.label"].map(within);
+        let path = |path: &String| self.texts.iter().find(|(other, _)| other.eq_ignore_ascii_case(path));
+        own.iter().flatten().chain(&around).find_map(path).map_or("", |(_, text)| text.trim())
     }
 
     /// The array called `name`, with or without its unit.
@@ -130,6 +158,7 @@ impl ArrayFile {
             ));
         };
         let time = time.map(|time| time.written(self.notation));
+        let record = record.with_unit(self.unit(array.name()));
         Ok(Reading {
             record,
             channel: channel.written(self.notation),
@@ -188,7 +217,10 @@ impl ArrayFile {
     fn scalars<'a>(&'a self, array: &'a Array) -> impl Iterator<Item = (&'a str, f64)> {
         let speaks = |other: &&Array| {
             let parent = parent(other.name());
-            parent.is_empty() || array.name().strip_prefix(parent).is_some_and(|rest| rest.starts_with('.'))
+            // Testlab has the increment in a structure beside that of the values.
+            let parent = parent.strip_suffix("x_values").map_or(parent, |rest| rest.trim_end_matches('.'));
+            let is_around = |rest: &str| rest.is_empty() || rest.starts_with('.');
+            parent.is_empty() || array.name().strip_prefix(parent).is_some_and(is_around)
         };
         self.arrays
             .iter()

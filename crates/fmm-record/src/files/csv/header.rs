@@ -33,6 +33,9 @@ pub(super) fn header(
     separator: Separator,
 ) -> Result<Header, RecordError> {
     let width = columns.len();
+    // A rule of dashes may stand between names and rows.
+    let is_said = |line: &Line| line.text.iter().any(|byte| byte.is_ascii_alphanumeric() || !byte.is_ascii());
+    let above = &above[..above.iter().rposition(is_said).map_or(0, |last| last + 1)];
     let mut found =
         Header { stated: above.iter().filter_map(|line| statement(line, separator)).collect(), ..Header::default() };
     let fitting =

@@ -657,3 +657,21 @@ fn a_gap_is_named_with_both_ends_and_the_record_beside_it_is_read() {
         "{rounded}"
     );
 }
+
+#[test]
+fn lines_above_the_table_are_found() {
+    let rows = "0.0,1.5\n0.5,2.5\n1.0,-1\n";
+    let names = "time [s],velocity [mm/s]\n";
+    for above in [
+        format!("Operator,Bob\nSpecimen,12\nDate,2024-01-02\n{names}"),
+        format!("My test, run 3, hot, dry\n\nMass [kg],10.391\n{names}"),
+        format!("a,b,c,d\n1,2,3,4\n{names}"),
+        format!("Start,10:00:00.000\n{names}-----,-----\n"),
+        "time,velocity\n[s],[mm/s]\n".to_owned(),
+        format!("[Header]\nName=abc\n[Data]\n{names}"),
+    ] {
+        let reading = read_text(&format!("{above}{rows}")).unwrap_or_else(|error| panic!("{above}: {error}"));
+        assert_eq!((reading.record.values(), reading.record.rate()), (&[1.5, 2.5, -1.0][..], 2.0), "{above}");
+        assert_eq!(reading.channel, "velocity [mm/s]", "{above}");
+    }
+}

@@ -6,7 +6,6 @@ use std::io::Read;
 use flate2::read::ZlibDecoder;
 
 use crate::error::RecordError;
-use crate::files::format::is_matlab_4;
 use crate::files::number::ByteOrder;
 use crate::files::reading::{MOST_INFLATED, too_large};
 
@@ -20,10 +19,6 @@ pub(super) fn byte_order(file: &[u8]) -> Result<ByteOrder, RecordError> {
     let order = match file.get(HEADER - 2..HEADER) {
         Some(b"IM") => ByteOrder::Little,
         Some(b"MI") => ByteOrder::Big,
-        _ if is_matlab_4(file) => {
-            let what = "a MATLAB version 4 file; load it in MATLAB and save it with -v7";
-            return Err(RecordError::unsupported(what));
-        }
         _ => {
             let what = format!("not a MATLAB file: {length} bytes without the header of one");
             return Err(RecordError::UnknownFormat { what });

@@ -1,6 +1,6 @@
 //! MATLAB files of version 7.3, which are HDF5.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use hdf5_pure::{AttrValue, DType, Dataset, Error, File, FormatError, Group, Layout};
 
@@ -23,6 +23,9 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
     let mut variables = Variables { file: ArrayFile::new(Notation::Matlab), bytes, budget: MOST_INFLATED as u64 };
     let damaged = |error| RecordError::undecoded("the version 7.3 file (HDF5) cannot be read", error);
     let opened = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
+    if let Ok(attributes) = opened.root().attrs() {
+        variables.state("", &attributes);
+    }
     variables.add(&opened.root(), "", 0).map_err(damaged)?;
     Ok(variables.file)
 }
@@ -37,6 +40,15 @@ struct Variables<'a> {
 }
 
 impl Variables<'_> {
+    /// Adds the attributes of what is called `path`, empty for those of the whole file.
+    fn state(&mut self, path: &str, attributes: &HashMap<String, AttrValue>) {
+        for (key, value) in attributes {
+            let number = value.as_f64().or(value.as_i64().map(|number| number as f64));
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            self.file.state(path, value.as_str(), number);
+        }
+    }
+
     /// Adds what lies in a group, and in those in it: fields of structures. `prefix` is how they are called, up to
     /// their own name.
     fn add(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), hdf5_pure::Error> {
@@ -44,6 +56,9 @@ impl Variables<'_> {
         for (name, dataset) in datasets {
             let name = format!("{prefix}{name}");
             let dataset = dataset.map_err(decoder);
+            if let Some(attributes) = dataset.as_ref().ok().and_then(|dataset| dataset.attrs().ok()) {
+                self.state(&name, &attributes);
+            }
             match dataset.and_then(|dataset| variable(&dataset, self.bytes.len() as u64, &mut self.budget)) {
                 Ok(Ok((dimensions, values))) => self.file.add(name, dimensions, values),
                 Ok(Err(kind)) => self.file.others.push((name, kind.to_string())),
@@ -60,10 +75,13 @@ impl Variables<'_> {
                 Ok(_) if depth == DEEPEST => {
                     self.file.damaged.push((name, RecordError::damaged("its groups are too deep")));
                 }
-                Ok(_) => match self.add(&group, &format!("{name}."), depth + 1) {
-                    Ok(()) => self.file.others.push((name, class::STRUCTURE.to_string())),
-                    Err(error) => self.file.damaged.push((name, decoder(error))),
-                },
+                Ok(attributes) => {
+                    self.state(&name, &attributes);
+                    match self.add(&group, &format!("{name}."), depth + 1) {
+                        Ok(()) => self.file.others.push((name, class::STRUCTURE.to_string())),
+                        Err(error) => self.file.damaged.push((name, decoder(error))),
+                    }
+                }
                 Err(error) => self.file.damaged.push((name, decoder(error))),
             }
         }

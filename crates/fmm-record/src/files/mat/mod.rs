@@ -1,4 +1,4 @@
-//! Arrays in MATLAB files, versions 5 to 7.3.
+//! Arrays in MATLAB files, versions 4 to 7.3.
 //!
 //! Fields of structures count as variables, called as MATLAB calls them: `run.v`, `trial(2).v`. Arrays of other kinds
 //! (text, cells, complex or sparse arrays) are not read, but they are listed, as is what cannot be read. HDF5 files of
@@ -14,18 +14,23 @@ mod hdf5;
 mod numbers;
 #[cfg(test)]
 mod tests;
+mod version_4;
 
 use crate::error::RecordError;
 use crate::files::arrays::{ArrayFile, Notation};
+use crate::files::format::is_matlab_4;
 use crate::files::mat::element::{Variables, byte_order, place};
 use crate::files::mat::numbers::take_apart;
 
 #[cfg(feature = "hdf5")]
 pub(crate) use hdf5::parse as parse_hdf5;
 
-/// The arrays in the bytes of a file of version 5 to 7. A variable that is damaged by itself is an error only where it
+/// The arrays in the bytes of a file of version 4 to 7. A variable that is damaged by itself is an error only where it
 /// is asked for. A file that is cut off exactly between two variables is a valid file with fewer variables.
 pub(crate) fn parse(bytes: &[u8]) -> Result<ArrayFile, RecordError> {
+    if is_matlab_4(bytes) {
+        return version_4::parse(bytes);
+    }
     let order = byte_order(bytes)?;
     let mut variables = Variables::new(bytes, order);
     let mut file = ArrayFile::new(Notation::Matlab);

@@ -7,8 +7,11 @@ use crate::files::mat::element::MATRIX;
 use crate::files::number::{ByteOrder, Kind, Number};
 
 const INT8: u32 = 1;
+const UINT16: u32 = 4;
 const INT32: u32 = 5;
 const UINT32: u32 = 6;
+const UTF8: u32 = 16;
+const UTF16: u32 = 17;
 const COMPLEX: u32 = 0x0800;
 
 /// Structures within structures that are followed.
@@ -62,6 +65,11 @@ pub(super) fn take_apart(
     {
         found.damaged.push((name, RecordError::damaged(what)));
         return Ok(());
+    }
+    if kind == class::TEXT
+        && let Some(text) = parts.next().and_then(|part| short_text(&part, order))
+    {
+        found.texts.push((name.clone(), text));
     }
     found.others.push((name, kind.to_string()));
     Ok(())
@@ -119,6 +127,18 @@ fn numbers(parts: &mut Parts, dimensions: &[usize]) -> Result<Vec<f64>, &'static
         return Err("its dimensions do not match its amount of data");
     }
     Ok(number.values(part.data))
+}
+
+/// The text in a part, in UTF-8 or UTF-16 or a byte a letter, if it is no longer than a unit may be.
+fn short_text(part: &Part<'_>, order: ByteOrder) -> Option<String> {
+    const LONGEST: usize = 64;
+    let units: Vec<u16> = match part.code {
+        _ if part.data.len() > LONGEST => return None,
+        UTF8 => return std::str::from_utf8(part.data).ok().map(str::to_owned),
+        UINT16 | UTF16 => part.data.chunks_exact(2).map(|pair| order.unsigned(pair) as u16).collect(),
+        _ => part.data.iter().copied().map(u16::from).collect(),
+    };
+    String::from_utf16(&units).ok()
 }
 
 /// A tagged piece of an array.

@@ -146,3 +146,13 @@ fn fields_of_structures_are_variables() {
     let file = parse_bytes(&file()).unwrap();
     assert_eq!(file.array("info.mass").unwrap().values().len(), 1);
 }
+
+#[test]
+fn attributes_state_unit_and_rate() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/hdf5_attributes.h5");
+    let file = crate::files::open(path).unwrap();
+    let reading = file.reading().unwrap();
+    assert_eq!((reading.record.len(), reading.record.rate(), reading.record.unit()), (1500, 500.0, "m/s"));
+    let channels = file.channels().unwrap();
+    assert_eq!(channels[0].label.unit().map(crate::units::WrittenUnit::si), Some("m/s"));
+}

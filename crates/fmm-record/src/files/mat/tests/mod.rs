@@ -216,8 +216,9 @@ fn other_files_are_told_apart() {
     }
     version[125] = 7;
     assert!(says(&parse_bytes(&version), "unknown version 0x0700"));
+    // Version 4 has no header of a file.
     let version_4: Vec<u8> = [0u32, 2, 1, 0, 2].iter().flat_map(|n| n.to_le_bytes()).chain(*b"x\0").collect();
-    assert!(says(&parse_bytes(&[&version_4[..], &[0; 16]].concat()), "version 4"));
+    assert_eq!(parse_bytes(&[&version_4[..], &[0; 16]].concat()).unwrap().array("x").unwrap().values(), [0.0, 0.0]);
     for file in [&b""[..], b"t,v\n0,1\n", &[0; 4000], &[b'x'; 4000]] {
         assert!(says(&parse_bytes(file), "not a MATLAB file"), "{} bytes", file.len());
     }
@@ -374,4 +375,33 @@ fn a_damaged_variable_leaves_the_others() {
     assert!(none.contains("at byte 128"), "the name of what cannot be expanded is not known: {none}");
     // Which one is meant is not known where others cannot be read.
     assert!(says(&file.read(&Reader::default()), "name the channel"));
+}
+
+#[test]
+fn version_4_is_read() {
+    for big in [false, true] {
+        let number = |number: u32| if big { number.to_be_bytes() } else { number.to_le_bytes() };
+        let double = |value: f64| if big { value.to_be_bytes() } else { value.to_le_bytes() };
+        let matrix = |kind: u32, rows: u32, name: &str, values: &[f64]| {
+            let kind = kind + if big { 1000 } else { 0 };
+            let header = [kind, rows, values.len() as u32 / rows, 0, name.len() as u32 + 1];
+            let header = header.into_iter().flat_map(number).chain(name.bytes()).chain([0]);
+            header.chain(values.iter().flat_map(|value| double(*value))).collect::<Vec<u8>>()
+        };
+        let unit: Vec<f64> = "mm/s".bytes().map(f64::from).collect();
+        let file = [matrix(0, 1, "fs", &[500.0]), matrix(0, 3, "v", &[1.5, 2.5, -1.0]), matrix(1, 1, "v_unit", &unit)]
+            .concat();
+        let reading = Reader::default().read_from(&file[..]).unwrap();
+        assert_eq!((reading.record.values(), reading.record.rate()), (&[1.5, 2.5, -1.0][..], 500.0));
+        assert_eq!((&reading.channel[..], reading.record.unit()), ("v", "mm/s"));
+        assert!(says(&parse_bytes(&file[..file.len() - 1]), "is cut off or damaged in the variable (at byte"));
+    }
+}
+
+#[test]
+fn structures_of_testlab_state_increment_and_unit() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/testlab_struct.mat");
+    let reading = Reader::default().read(path).unwrap();
+    assert_eq!((reading.record.len(), reading.record.rate(), reading.record.unit()), (1500, 500.0, "m/s"));
+    assert_eq!(reading.channel, "Signal_0.y_values.values");
 }
