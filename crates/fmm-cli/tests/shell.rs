@@ -1,7 +1,8 @@
 //! What the program is to a shell: codes, documents, completions, manual pages, no colours.
 
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn fmm(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_fmm")).args(arguments).output().unwrap()
@@ -177,4 +178,33 @@ fn a_headline_says_what_was_not_measured() {
         "{text}"
     );
     assert!(lines.next().is_some_and(|line| line.starts_with("coulomb, ")), "{text}");
+}
+
+#[test]
+fn standard_input_is_read_and_a_wrong_unit_of_time_is_told() {
+    // 2 Hz at 500 Hz, friction takes 5 % of the first height from every half cycle; the times are in ms.
+    let velocity = |i: u32| {
+        let half_cycles = f64::from(i) * 2e-3 * 4.0;
+        let height = 0.975 - 0.05 * half_cycles.floor();
+        if height > 0.0 { height * (std::f64::consts::PI * half_cycles).sin() } else { 0.0 }
+    };
+    let row = |i: u32| format!("{}.0,{:.5}\n", 2 * i, velocity(i) + 1e-4 * f64::from(i * 7919 % 13));
+    let text = format!("t,v [m/s]\n{}", (0..2600).map(row).collect::<String>());
+    let told = |options: &str| {
+        let line = format!("identify - --law coulomb {options}");
+        let mut program = Command::new(env!("CARGO_BIN_EXE_fmm"))
+            .args(line.split_whitespace())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        program.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+        let output = program.wait_with_output().unwrap();
+        assert!(output.status.success(), "{options}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let wrong = told("");
+    let headline = wrong.lines().find(|line| line.starts_with("coulomb:")).unwrap();
+    assert!(headline.contains("; but no machine has 0.002 Hz: if its times are in ms, it has 2 Hz"), "{wrong}");
+    assert!(!told("--time-unit ms").contains("no machine has"));
 }

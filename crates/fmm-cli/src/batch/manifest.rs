@@ -227,4 +227,15 @@ mod tests {
         assert_eq!((cell(0, "mass"), cell(1, "mass"), cell(1, "unit")), ("10.0", "11e0", "mm/s"));
         assert_eq!((cell(0, "day"), cell(1, "day"), cell(1, "operator")), ("", "2026-11-24", ""));
     }
+
+    #[test]
+    fn semicolons_and_tabs_separate_columns_as_well() {
+        for text in
+            ["file;mass;law\na.csv;10,391;coulomb,berger\n", "\u{feff}file\tmass\tlaw\na.csv\t10.391\tcoulomb,berger\n"]
+        {
+            let manifest = Manifest::of_csv(text).unwrap();
+            assert_eq!(manifest.columns, ["file", "mass", "law"]);
+            assert_eq!(manifest.records, [["a.csv", "10.391", "coulomb,berger"]]);
+        }
+    }
 }
