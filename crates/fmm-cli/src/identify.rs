@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use crate::figure::{drawn, histogram, label};
 use crate::files;
-use crate::input::{Choice, Given, Question};
+use crate::input::{Choice, DRIVE, Given, Question};
 use crate::output::{Output, print, print_json, spinner};
 use crate::posterior::Posterior;
 use crate::report::{self, Curve, Found, Pictures};
@@ -20,17 +20,6 @@ use fmm_fit::Progress;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, FrictionCurve, ImpactTrial, Preparation};
 use fmm_record::{Column, Quantity, Record};
 use serde::Serialize;
-
-/// Group of the options by which a machine is driven, of which a record has one at most.
-const DRIVE: &str = "drive";
-
-/// Names of the options by which a machine is driven.
-pub(crate) fn drives() -> Vec<String> {
-    let mut command = Arguments::augment_args(clap::Command::new("identify"));
-    command.build();
-    let drives = command.get_groups().filter(|group| group.get_id() == DRIVE).flat_map(clap::ArgGroup::get_args);
-    drives.map(clap::Id::to_string).collect()
-}
 
 /// Identifies the friction of a machine from the record of its free vibration.
 #[derive(Debug, Args)]
@@ -222,4 +211,18 @@ fn give_out(
         eprintln!("report: {}", path.display());
     }
     failed.map_or(Ok(()), Err)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::DRIVES;
+
+    #[test]
+    fn drives_are_the_options_of_their_group() {
+        let mut command = Arguments::augment_args(clap::Command::new("identify"));
+        command.build();
+        let group = command.get_groups().find(|group| group.get_id() == DRIVE).unwrap();
+        assert!(group.get_args().map(clap::Id::as_str).eq(DRIVES));
+    }
 }

@@ -11,8 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::{FILE, Manifest};
 use super::sheet::Sheet;
 use crate::files::{self, create_folder, named};
-use crate::identify::drives;
-use crate::input::{Given, Input, Question};
+use crate::input::{DRIVES, Given, Input, Question};
 
 /// The records of a campaign, in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -184,7 +183,7 @@ impl RecordOptions {
 /// Refuses a column that is meant for an option of `fmm identify` by which the machine is driven: its record would be
 /// fitted as a free vibration.
 fn refuse_drive(column: &str) -> Result<(), String> {
-    let Some(option) = drives().into_iter().find(|option| is_meant(column, option)) else { return Ok(()) };
+    let Some(option) = DRIVES.into_iter().find(|option| is_meant(column, option)) else { return Ok(()) };
     Err(format!(
         "column `{column}` is meant for --{option}, but a campaign is of free vibrations; identify a driven record by \
          `fmm identify FILE --{option} NAME`, or call the column otherwise if it only describes the records"

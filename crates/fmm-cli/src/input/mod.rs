@@ -19,6 +19,10 @@ pub(crate) use question::{Held, Question};
 use source::BUNDLED;
 pub(crate) use source::{Choice, Input, Layout, in_options, is_motion, motion, motion_called};
 
+/// Group of the options by which a machine is driven, of which a record has one at most, and their names.
+pub(crate) const DRIVE: &str = "drive";
+pub(crate) const DRIVES: [&str; 3] = ["force", "base", "impact"];
+
 /// File, channel, and measured quantity.
 #[derive(Debug, Args)]
 pub(crate) struct Given {
