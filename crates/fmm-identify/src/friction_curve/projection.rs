@@ -77,23 +77,27 @@ impl ShownFriction {
         Ok(Self { terms, is_structured, top, names, beside, first, settled, root, best, line })
     }
 
-    /// The same with what else acts: one after the other the term that explains most of the residuals, as long as these
-    /// are no noise and it explains enough of them; `None` if nothing does.
+    /// The same with what else acts: the terms that explain most of the residuals, again and again as long as these are
+    /// no noise and some terms explain enough of them; `None` if nothing does.
     pub(crate) fn beside(&self, machine: &Machine, experiments: &[Experiment]) -> Option<Self> {
+        const FURTHER: [&[Term]; 3] =
+            [&[Term::CubicSpring], &[Term::CubicSpring, Term::QuinticSpring], &[Term::Change]];
         let mut found: Option<Self> = None;
         loop {
             let shown = found.as_ref().unwrap_or(self);
-            let has = |term: Term| shown.terms.has(term);
-            let spring = if has(Term::CubicSpring) { Term::QuinticSpring } else { Term::CubicSpring };
-            let further = [spring, Term::Change].into_iter().filter(|term| {
-                let is_known = term.is_spring() && machine.restoring() != Restoring::Linear;
-                !has(*term) && !is_known
-            });
-            let with = |term: Term| Self::of(machine, shown.terms.clone().with(term), experiments).ok();
-            let gain = |further: &Self| further.gain(shown);
-            let further = if shown.is_structured { on_all_threads(further.collect(), with) } else { Vec::new() };
-            let best = further.into_iter().flatten().max_by(|a, b| gain(a).total_cmp(&gain(b)));
-            match best.filter(|best| gain(best) > EXPLAINED) {
+            let is_free = |term: &&Term| !term.is_spring() || machine.restoring() == Restoring::Linear;
+            let further =
+                FURTHER.map(|terms| terms.iter().filter(is_free).copied().fold(shown.terms.clone(), Terms::with));
+            let further = further.into_iter().filter(|terms| shown.is_structured && *terms != shown.terms);
+            let further = on_all_threads(further.collect(), |terms| Self::of(machine, terms, experiments).ok());
+            let worth = |further: &Self| {
+                let added = further.terms.iter().count() - shown.terms.iter().count();
+                further.gain(shown) - EXPLAINED * added as f64
+            };
+            // A change follows much that is none: it counts if nothing is left to explain.
+            let is_idle = |further: &Self| further.terms.has(Term::Change) && further.is_structured;
+            let further = further.into_iter().flatten().filter(|further| !is_idle(further) && worth(further) > 0.0);
+            match further.max_by(|a, b| worth(a).total_cmp(&worth(b))) {
                 Some(best) => found = Some(best),
                 None => return found,
             }

@@ -90,11 +90,17 @@ impl Inquiry<'_> {
     }
 }
 
-/// Trials of Coulomb and viscous friction on a spring with a stop, a preload or a gap.
-pub(super) fn with_corners() -> [Trial; 2] {
-    let with = |term| Trial { candidate: Candidate::of::<CoulombViscous>().with(Terms::NONE.with(term)), fixed: &[] };
-    [Term::Stop, Term::Gap].map(with)
+/// Trials of a level and a straight line beside each of these lists of terms.
+pub(super) fn beside_line(terms: &[&[Term]]) -> impl Iterator<Item = Trial> {
+    let with = |terms: &&[Term]| terms.iter().fold(Terms::NONE, |terms, term| terms.with(*term));
+    terms.iter().map(move |terms| Trial { candidate: Candidate::of::<CoulombViscous>().with(with(terms)), fixed: &[] })
 }
+
+/// Springs that bend with drag, tried if the friction curve with a bent spring was not found.
+pub(super) const SPRINGS: [&[Term]; 2] =
+    [&[Term::CubicSpring, Term::QuinticSpring], &[Term::QuadraticDamping, Term::CubicSpring, Term::QuinticSpring]];
+/// Springs with a stop, a preload or a gap, tried if a smooth spring leaves correlated residuals.
+pub(super) const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
 
 /// A value that is held of `law`, or of all laws for `None`, is meant for the `candidate`.
 fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
@@ -215,7 +221,7 @@ mod tests {
                 "bouc_wen + linear, amplitude = 1",
             ]
         );
-        assert_eq!(names(with_corners()), ["coulomb_viscous + stop", "coulomb_viscous + gap"]);
+        assert_eq!(names(beside_line(&CORNERS)), ["coulomb_viscous + stop", "coulomb_viscous + gap"]);
     }
 
     /// A law of one's own is tried at the stage that it states, after those of the catalogue.
