@@ -59,7 +59,8 @@
 //!
 //! Text and Universal Files are always read. `mat`, on by default, reads MATLAB files of versions 4 to 7, `hdf5` those
 //! of version 7.3, `npy` files of NumPy, `workbook` sheets of spreadsheets, `json` tables in JSON, `wav` sound, and
-//! `gzip` any of them compressed. A file whose reader is not compiled is refused with the name of the feature. Without these features the crate depends on `fmm-model`, `realfft` and `thiserror` only.
+//! `gzip` any of them compressed. A file whose reader is not compiled is refused with the name of the feature. Without
+//! these features the crate depends on `fmm-model`, `realfft` and `thiserror` only.
 //!
 //! # Neighbours
 //!

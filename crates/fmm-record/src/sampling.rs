@@ -55,7 +55,8 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     if usual <= worst && steps.iter().all(|step| *step >= 0.0) && 2 * repeated > steps.len() && steps.len() > 9 {
         let [rate, worst] = [steps.len() as f64 / steps.iter().sum::<f64>(), worst].map(in_six_digits);
         let what = format!(
-            "time stamps repeat, {repeated} of {}: they are rounded to {worst} s, more than an interval; their span says about \
+            "time stamps repeat, {repeated} of {}: they are rounded to {worst} s, more than an interval; \
+             their span says about \
              {rate} Hz; give the rate",
             times.len()
         );
@@ -84,7 +85,8 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
             Some(RecordError::time(
                 index,
                 format!(
-                    "{what}; missing samples: {missing}, and nothing is put in their place; use the record up to {previous} s or \
+                    "{what}; missing samples: {missing}, and nothing is put in their place; \
+                     use the record up to {previous} s or \
                      from {time} s on"
                 ),
             ))

@@ -205,7 +205,8 @@ impl Choice {
         };
         let reading = reading.map_err(|error| match error {
             RecordError::TimeAxis { .. } => format!(
-                "{error}; here the rate is --rate, the time is --time, its unit is --time-unit, and --from and --to cut the record"
+                "{error}; here the rate is --rate, \
+                 the time is --time, its unit is --time-unit, and --from and --to cut the record"
             )
             .into(),
             RecordError::Damaged { line: Some(_), .. } if file.format() != Format::Universal => format!(

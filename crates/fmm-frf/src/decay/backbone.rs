@@ -94,7 +94,8 @@ impl BackboneOptions {
 ///
 /// // 20 Hz with c/m = 0.8 1/s; without damping, the spring would swing slightly faster.
 /// let at = |t: f64| 1e-3 * (-0.4 * t).exp() * (125.663_706 * t).cos();
-/// let record = Record::sampled(2000.0, (0..8000).map(|i| at(f64::from(i) / 2000.0)).collect(), Quantity::Displacement, "m")?;
+/// let positions = (0..8000).map(|i| at(f64::from(i) / 2000.0)).collect();
+/// let record = Record::sampled(2000.0, positions, Quantity::Displacement, "m")?;
 /// let backbone = Backbone::of(&record, &BackboneOptions::default())?;
 /// let spring = 125.663_706_f64.hypot(0.4) / std::f64::consts::TAU;
 /// for point in backbone.points() {

@@ -26,7 +26,8 @@ pub(super) struct Fitted {
     pub(super) roughness: f64,
 }
 
-/// Mean square of the second differences of residuals of windows: neighbours do not correlate, the next but one by −0.45.
+/// Mean square of the second differences of residuals of windows: neighbours do not correlate, the next but one by
+/// −0.45.
 const DIFFERENCES: f64 = 5.1;
 
 impl Fitted {

@@ -50,8 +50,8 @@ pub(super) const LOST: f64 = 1e-12;
 /// anything that is stated.
 pub(super) const SETTLED: f64 = 0.05;
 
-/// Fall of −2 ln L by each term beside the curve above which the records show it (1). Origin: chosen; that of a parameter
-/// of no effect is above it once in 100 000 records.
+/// Fall of −2 ln L by each term beside the curve above which the records show it (1). Origin: chosen; that of a
+/// parameter of no effect is above it once in 100 000 records.
 pub(super) const EXPLAINED: f64 = 20.0;
 
 /// Draws behind a simultaneous band. Origin: its reach is known to 1 %.

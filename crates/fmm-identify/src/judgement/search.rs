@@ -319,7 +319,8 @@ impl Run<'_, '_> {
         };
         if tests.iter().any(is_seen) {
             let of_state = Run { options: &of_state, ..*self };
-            // A contact that yields is a spring as well, one that softens: alone it may explain what another spring does.
+            // A contact that yields is a spring as well, one that softens: alone it may explain what another spring
+            // does.
             if found.is_structured() || beside.is_empty() {
                 of_state.fit_presliding(found, plain.as_ref())?;
             }

@@ -2,16 +2,17 @@
 
 use crate::warning::{Warning, to_three_digits};
 
-/// Largest coefficient of friction that is believed (1). Dry contacts of tables reach 1.5 (rubber on concrete 0.6 to 1.0,
-/// aluminium on aluminium 1.05 to 1.35; Avallone and Baumeister, Marks' Standard Handbook, table 3.2.1), clean metals in
-/// vacuum about 2 to 3 before they seize.
+/// Largest coefficient of friction that is believed (1). Dry contacts of tables reach 1.5 (rubber on concrete 0.6 to
+/// 1.0, aluminium on aluminium 1.05 to 1.35; Avallone and Baumeister, Marks' Standard Handbook, table 3.2.1), clean
+/// metals in vacuum about 2 to 3 before they seize.
 const LARGEST_MU: f64 = 3.0;
 
 /// Frequencies of machines that are let swing (Hz): a mooring sways with periods of some 50 s, beyond 20 kHz no table
 /// vibrometer or accelerometer of a laboratory is specified.
 const FREQUENCIES: (f64, f64) = (0.02, 20e3);
 
-/// Share of the weight of the moving mass below which a normal load is doubted if the coefficient is (1): a power of ten.
+/// Share of the weight of the moving mass below which a normal load is doubted if the coefficient is (1): a power of
+/// ten.
 const SMALL_LOAD: f64 = 0.1;
 
 /// Standard gravity (m/s²).
@@ -25,8 +26,8 @@ const TIMES: [(&str, f64); 6] =
 const LIKELY: (f64, f64) = (0.1, 2e3);
 
 impl Warning {
-    /// Numbers that no machine has: a frequency (Hz), or a coefficient `mu` of a contact under a `load` (N) that brakes a
-    /// `mass` (kg).
+    /// Numbers that no machine has: a frequency (Hz), or a coefficient `mu` of a contact under a `load` (N) that brakes
+    /// a `mass` (kg).
     pub(crate) fn of_plausibility(
         frequency: Option<f64>,
         mu: Option<f64>,

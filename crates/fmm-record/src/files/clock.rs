@@ -89,8 +89,8 @@ impl Clock {
         self.unit == Written::Nothing && are_whole(numbers)
     }
 
-    /// Brings the time stamps of the series called `name` to seconds, and tells what they were; `by_nature` is true if it
-    /// is time only because it increases uniformly.
+    /// Brings the time stamps of the series called `name` to seconds, and tells what they were; `by_nature` is true if
+    /// it is time only because it increases uniformly.
     ///
     /// # Errors
     /// [`RecordError::TimeAxis`] if something else is written where the unit belongs, or if they

@@ -54,9 +54,9 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 ///
 /// # Text
 ///
-/// Comma, semicolon or tab separated, or aligned by blanks, in UTF-8 or UTF-16. Files of LabVIEW (`.lvm`), SignalExpress,
-/// Tektronix, Rigol, PicoScope and catman and the `sep=` of Excel need nothing said. Sheets of workbooks, JSON and sound
-/// are read by the same rules; the whole numbers of a sound are counts.
+/// Comma, semicolon or tab separated, or aligned by blanks, in UTF-8 or UTF-16. Files of LabVIEW (`.lvm`),
+/// SignalExpress, Tektronix, Rigol, PicoScope and catman and the `sep=` of Excel need nothing said. Sheets of
+/// workbooks, JSON and sound are read by the same rules; the whole numbers of a sound are counts.
 ///
 /// | what | found by default |
 /// |---|---|
@@ -90,7 +90,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 ///    lower case.
 ///
 /// Variables of the same structure come before those around it; attributes of HDF5 count like variables. The unit is an
-/// attribute or a text called `unit` or `units` of the array or beside it, `v_unit`, or the label of a quantity of Testlab.
+/// attribute or a text called `unit` or `units` of the array or beside it, `v_unit`, or the label of a quantity of
+/// Testlab.
 ///
 /// # Universal Files
 ///
@@ -119,8 +120,8 @@ impl Reader {
     }
 
     /// The table to read, counted from 1: a segment of LabVIEW, a table below another one with the same names, a sheet.
-    /// By default tables whose times go on are one record, and otherwise the first is read, with a remark; of sheets, the
-    /// one with most cells.
+    /// By default tables whose times go on are one record, and otherwise the first is read, with a remark; of sheets,
+    /// the one with most cells.
     #[must_use]
     pub fn table(mut self, table: usize) -> Self {
         self.table = Some(table);

@@ -11,8 +11,8 @@ pub(super) struct Stamp {
 impl Stamp {
     /// The stamp that a field is; `None` for any other text.
     ///
-    /// Two numbers are hours and minutes, or, if the second has a fraction, minutes and seconds; a fourth is a fraction.
-    /// A zone counts for nothing.
+    /// Two numbers are hours and minutes, or, if the second has a fraction, minutes and seconds; a fourth is a
+    /// fraction. A zone counts for nothing.
     pub(super) fn of(field: &[u8]) -> Option<Self> {
         const HOUR: f64 = 3600.0;
         let text = std::str::from_utf8(field).ok()?.trim();
