@@ -18,9 +18,9 @@ const SMALL_LOAD: f64 = 0.1;
 /// Standard gravity (m/s²).
 const GRAVITY: f64 = 9.806_65;
 
-/// Units that times may be in when seconds were read, with their seconds.
+/// Units that times may be in when seconds were read, with their seconds; what loggers and spreadsheets write first.
 const TIMES: [(&str, f64); 6] =
-    [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("min", 60.0), ("h", 3600.0), ("days", 86_400.0)];
+    [("ms", 1e-3), ("days", 86_400.0), ("us", 1e-6), ("ns", 1e-9), ("min", 60.0), ("h", 3600.0)];
 
 /// Frequencies (Hz) that make a unit of time likely.
 const LIKELY: (f64, f64) = (0.1, 2e3);
