@@ -106,9 +106,9 @@ impl ShownFriction {
 
     /// Fall of −2 ln L beside `other`, for as many residuals as are independent (1).
     fn gain(&self, other: &Self) -> f64 {
-        let near = |one: &Self| one.settled.near.sum_of_squares();
+        let left = |one: &Self| one.settled.near.unexplained();
         let independent = self.settled.near.residuals().len() as f64 / self.settled.near.correlation().max(1.0);
-        independent * (near(other) / near(self)).ln()
+        independent * (left(other) / left(self)).ln()
     }
 
     /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction

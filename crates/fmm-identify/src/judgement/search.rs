@@ -22,7 +22,7 @@ use crate::judgement::rules::{
     MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
-use crate::judgement::trials::{CORNERS, SPRINGS, Trial, beside_line};
+use crate::judgement::trials::{CORNERS, Trial, beside_line};
 use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
@@ -299,13 +299,6 @@ impl Run<'_, '_> {
         found.add(of_speed.fit(allowed, Start::of(shown, &[]))?);
         if changes && found.changes() && !found.asks_for_more(tests) {
             return Ok(());
-        }
-        let is_bent = |test: &ScoreTest| test.extension == Extension::SofteningSpring && test.is_significant();
-        if beside.is_empty() && found.is_structured() && tests.iter().any(is_bent) && !is_filtered(found) {
-            found.add(self.fit(self.candidates(beside_line(&SPRINGS))?, Start::Further)?);
-            if found.is_structured() {
-                found.add(self.fit(self.candidates(beside_line(&CORNERS))?, Start::Records)?);
-            }
         }
         // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
         // moves where the machine turns.

@@ -96,9 +96,6 @@ pub(super) fn beside_line(terms: &[&[Term]]) -> impl Iterator<Item = Trial> {
     terms.iter().map(move |terms| Trial { candidate: Candidate::of::<CoulombViscous>().with(with(terms)), fixed: &[] })
 }
 
-/// Springs that bend with drag, tried if the friction curve with a bent spring was not found.
-pub(super) const SPRINGS: [&[Term]; 2] =
-    [&[Term::CubicSpring, Term::QuinticSpring], &[Term::QuadraticDamping, Term::CubicSpring, Term::QuinticSpring]];
 /// Springs with a stop, a preload or a gap, tried if a smooth spring leaves correlated residuals.
 pub(super) const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
 
