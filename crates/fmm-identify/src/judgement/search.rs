@@ -270,6 +270,8 @@ impl Run<'_, '_> {
             options.clone().with_max_iterations(most.min(options.max_iterations()))
         };
         let (of_speed, of_state) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
+        // A contact that yields is a spring that softens: it may be what another spring explains as well.
+        let preslides_alone = self.shows_presliding(tests);
         let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, self.decays).ok();
         // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
         // comparison.
@@ -292,16 +294,25 @@ impl Run<'_, '_> {
         if found.is_structured() && beside.has_spring() {
             found.add(self.fit(self.candidates(beside_line(&CORNERS))?, Start::Records)?);
         }
-        if !beside.is_empty() && !found.asks_for_more(tests) {
-            return Ok(());
-        }
         let allowed = of_speed.allowed(found, shown)?;
         found.add(of_speed.fit(allowed, Start::of(shown, &[]))?);
         if changes && found.changes() && !found.asks_for_more(tests) {
             return Ok(());
         }
-        // A converter hides presliding shorter than a few of its steps, and its steps look like presliding: neither
-        // moves where the machine turns.
+        let of_state = Run { options: &of_state, ..*self };
+        let preslides = self.shows_presliding(tests);
+        if preslides || preslides_alone {
+            of_state.fit_presliding(found, plain.as_ref())?;
+        }
+        if preslides && found.is_structured() && !beside.is_empty() {
+            Run { beside: &beside, ..of_state }.fit_presliding(found, shown)?;
+        }
+        Ok(())
+    }
+
+    /// The `tests` have a sign of presliding that the records can show. A converter hides presliding shorter than a few
+    /// of its steps, and its steps look like presliding: neither moves where the machine turns.
+    fn shows_presliding(&self, tests: &[ScoreTest]) -> bool {
         let steps = self.decays.iter().map(|decay| {
             let summary = decay.summary();
             summary.resolution.filter(|_| summary.is_rounded()).unwrap_or(0.0) / summary.amplitudes.0
@@ -310,18 +321,7 @@ impl Run<'_, '_> {
         let is_seen = |test: &ScoreTest| {
             test.extension == Extension::Presliding && test.significance() > SEEN_PRESLIDING && test.size > least
         };
-        if tests.iter().any(is_seen) {
-            let of_state = Run { options: &of_state, ..*self };
-            // A contact that yields is a spring as well, one that softens: alone it may explain what another spring
-            // does.
-            if found.is_structured() || beside.is_empty() {
-                of_state.fit_presliding(found, plain.as_ref())?;
-            }
-            if !beside.is_empty() && found.is_structured() {
-                Run { beside: &beside, ..of_state }.fit_presliding(found, shown)?;
-            }
-        }
-        Ok(())
+        tests.iter().any(is_seen)
     }
 
     /// Adds fits by the laws with presliding, the further ones from where the first have ended.
@@ -331,8 +331,8 @@ impl Run<'_, '_> {
         let further = self.candidates(self.inquiry.at(SearchStage::FurtherPresliding))?;
         let nearest = closest(found.identifications.iter().filter(|found| preslides(found)));
         let nearest: Vec<&Fitted> = nearest.iter().map(|found| &found.fitted).collect();
-        let with_state = self.fit(further, Start::of(shown, &nearest))?;
-        found.add(with_state);
+        let further = self.fit(further, Start::of(shown, &nearest))?;
+        found.add(further);
         Ok(())
     }
 
