@@ -5,13 +5,16 @@ use std::ops::Range;
 use crate::examination::Examination;
 use crate::numerics::{quantile, range};
 use crate::record::Record;
+use crate::units::Quantity;
 
 /// Spike or drop-out: up to three samples in a row that stand off the motion around them.
 ///
 /// A sample is off if it differs from the median of the seven samples around it by more than eight standard
 /// deviations of the noise, three steps of the converter, 0.1 % of the record's range, and four times the difference
-/// that all but one sample in 200 have. The last limit passes a fast motion or its sharp onset. The first and last
-/// three samples are not judged. A pulse of up to three samples in a force record is a spike in this sense.
+/// that all but one sample in 200 have. The last limit passes a fast motion or its sharp onset. The first or last
+/// samples, up to three, are off if they lie as far from the straight line through the two samples beside them, and jump
+/// there by four times as much as the values move beside; those of an acceleration or a force, which may jump, are not
+/// judged. A pulse of up to three samples in a force record is a spike in this sense.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Spike {
@@ -33,17 +36,35 @@ const LONGEST: usize = SIDE;
 /// Spikes of a record.
 pub(crate) fn spikes(examination: &Examination) -> Vec<Spike> {
     let record = examination.record();
-    let values = record.values();
-    runs(values, examination.noise(), examination.step())
-        .into_iter()
-        .map(|run| {
-            let height = run
-                .clone()
-                .map(|i| values[i] - between(values, &run, i))
-                .fold(0.0f64, |most, height| if height.abs() > most.abs() { height } else { most });
-            Spike { time: record.time(run.start), index: run.start, count: run.len(), height }
-        })
-        .collect()
+    let mut values = record.values().to_vec();
+    let mut found: Vec<Spike> = Vec::new();
+    // Large spikes, and the medians that they shift, hide smaller ones.
+    let is_known = |found: &[Spike], run: &Range<usize>| {
+        found.iter().any(|spike| spike.index < run.end && run.start < spike.index + spike.count)
+    };
+    loop {
+        let limit = limit(&values, examination.noise(), examination.step());
+        let [begin, end] = match record.quantity() {
+            Quantity::Displacement | Quantity::Velocity => ends(&values, limit),
+            _ => [0..0, values.len()..values.len()],
+        };
+        let inner = runs(&values[begin.end..end.start], limit).into_iter();
+        let inner = inner.map(|run| run.start + begin.end..run.end + begin.end);
+        let all = [begin.clone()].into_iter().chain(inner).chain([end]);
+        let runs: Vec<_> = all.filter(|run| !run.is_empty() && !is_known(&found, run)).collect();
+        if runs.is_empty() {
+            found.sort_unstable_by_key(|spike| spike.index);
+            return found;
+        }
+        for run in runs {
+            let bridge: Vec<f64> = run.clone().map(|i| between(&values, &run, i)).collect();
+            let height = |(i, bridge): (usize, &f64)| values[i] - bridge;
+            let larger = |most: f64, height: f64| if height.abs() > most.abs() { height } else { most };
+            let height = run.clone().zip(&bridge).map(height).fold(0.0, larger);
+            found.push(Spike { time: record.time(run.start), index: run.start, count: run.len(), height });
+            values[run].copy_from_slice(&bridge);
+        }
+    }
 }
 
 /// The record of an examination with its spikes bridged by straight lines.
@@ -59,28 +80,73 @@ pub(crate) fn without_spikes(examination: &Examination) -> Record {
     record.derived(record.start(), values)
 }
 
-/// The straight line across a run of samples, at sample `i`. The run touches neither end of the values.
+/// The straight line across a run of samples, at sample `i`; at an end of the values, the line through the two samples
+/// beside the run.
 fn between(values: &[f64], run: &Range<usize>, i: usize) -> f64 {
-    let (before, after) = (run.start - 1, run.end);
-    let part = (i - before) as f64 / (after - before) as f64;
+    let (before, after) = if run.start == 0 {
+        (run.end, run.end + 1)
+    } else if run.end == values.len() {
+        (run.start - 2, run.start - 1)
+    } else {
+        (run.start - 1, run.end)
+    };
+    let part = (i as f64 - before as f64) / (after - before) as f64;
     values[before] + part * (values[after] - values[before])
 }
 
-/// Runs of samples that are off, in values of this noise and step of the converter.
-fn runs(values: &[f64], noise: f64, step: f64) -> Vec<Range<usize>> {
+/// Distance from the median around it beyond which a sample is off, in values of this noise and step of the converter;
+/// infinite for too few values.
+fn limit(values: &[f64], noise: f64, step: f64) -> f64 {
     const MOST: usize = 1 << 17;
     const COMMON: f64 = 0.995;
     const VISIBLE: f64 = 1e-3;
     if values.len() < 4 * (2 * SIDE + 1) {
-        return Vec::new();
+        return f64::INFINITY;
     }
     let judged = SIDE..values.len() - SIDE;
-    let off = |i: usize| (values[i] - median_around(values, i)).abs();
-    let mut some: Vec<f64> = judged.clone().step_by(judged.len().div_ceil(MOST)).map(off).collect();
+    let mut some: Vec<f64> = judged.clone().step_by(judged.len().div_ceil(MOST)).map(|i| off(values, i)).collect();
     let (low, high) = range(values);
-    let limit = (8.0 * noise).max(3.0 * step).max(4.0 * quantile(&mut some, COMMON)).max(VISIBLE * (high - low));
+    (8.0 * noise).max(3.0 * step).max(4.0 * quantile(&mut some, COMMON)).max(VISIBLE * (high - low))
+}
+
+/// Distance of sample `i` from the median around it.
+fn off(values: &[f64], i: usize) -> f64 {
+    (values[i] - median_around(values, i)).abs()
+}
+
+/// Samples at the beginning and at the end that are off.
+fn ends(values: &[f64], limit: f64) -> [Range<usize>; 2] {
+    let count = values.len();
+    let begin = off_beginning(|i| values[i], limit);
+    let end = off_beginning(|i| values[count - 1 - i], limit);
+    [0..begin, count - end..count]
+}
+
+/// Number of samples at the beginning of the values `at`, up to the longest spike, that are off.
+fn off_beginning(at: impl Fn(usize) -> f64, limit: f64) -> usize {
+    /// Steps from sample to sample beside a jump (1). Origin: a motion that sets in, or turns, changes its steps by a
+    /// factor of two or three.
+    const JUMP: f64 = 4.0;
+    if limit.is_infinite() {
+        return 0;
+    }
+    let jumps = |first: &usize| {
+        let first = *first;
+        let step = |i: usize| (at(i + 1) - at(i)).abs();
+        let beside = (first..first + LONGEST).map(step).fold(0.0, f64::max);
+        let jump = at(first - 1) - (2.0 * at(first) - at(first + 1));
+        jump.abs() > limit && step(first - 1) > JUMP * beside
+    };
+    (1..=LONGEST).rev().find(jumps).unwrap_or(0)
+}
+
+/// Runs of samples farther off than `limit`, but for the first and last three.
+fn runs(values: &[f64], limit: f64) -> Vec<Range<usize>> {
+    if limit.is_infinite() {
+        return Vec::new();
+    }
     let mut suspects: Vec<Range<usize>> = Vec::new();
-    for i in judged.filter(|i| off(*i) > limit) {
+    for i in (SIDE..values.len() - SIDE).filter(|i| off(values, *i) > limit) {
         match suspects.last_mut() {
             Some(run) if i <= run.end + 1 => run.end = i + 1,
             _ => suspects.push(i..i + 1),
@@ -103,13 +169,14 @@ fn culprit(values: &[f64], suspect: Range<usize>, limit: f64) -> Option<Range<us
         }
         (suspect.start - from..suspect.end - from).all(|i| (bridged[i] - median_around(&bridged, i)).abs() <= limit)
     };
-    // A spike jumps away and jumps back, much farther than the samples beside it move. A motion that stops or sets in
-    // does one of the two, and a smooth peak neither.
+    // A spike jumps away and jumps back, much farther than the samples beside it move off their straight lines. A motion
+    // that stops or sets in does one of the two, and a smooth peak neither.
     let returns = |run: &Range<usize>| {
-        let step = |from: usize, to: usize| values[to] - values[from];
-        let (away, back) = (step(run.start - 1, run.start), step(run.end, run.end - 1));
-        let beside = step(run.start - 2, run.start - 1).abs().max(step(run.end + 1, run.end).abs());
-        away * back > 0.0 && away.abs().min(back.abs()) > (0.5 * limit).max(2.0 * beside)
+        let bend = |i: usize, towards: usize, next: usize| values[i] - 2.0 * values[towards] + values[next];
+        let (away, back) = (bend(run.start, run.start - 1, run.start - 2), bend(run.end - 1, run.end, run.end + 1));
+        let before = if run.start > 2 { bend(run.start - 1, run.start - 2, run.start - 3).abs() } else { 0.0 };
+        let after = if run.end + 2 < values.len() { bend(run.end, run.end + 1, run.end + 2).abs() } else { 0.0 };
+        away * back > 0.0 && away.abs().min(back.abs()) > (0.5 * limit).max(2.0 * before.max(after))
     };
     (1..=LONGEST.min(suspect.len())).find_map(|length| {
         let runs = (suspect.start..=suspect.end - length).map(|start| start..start + length);
@@ -129,7 +196,6 @@ fn median_around(values: &[f64], i: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::tests::synthetic::{CoulombDecay, pendulum, pendulum_velocity, sampled, wheel};
-    use crate::units::Quantity;
 
     fn spikes(record: &Record) -> Vec<Spike> {
         Examination::of(record).spikes().to_vec()
@@ -171,6 +237,27 @@ mod tests {
         let record = Record::sampled(1000.0, values, Quantity::Velocity, "mm/s").unwrap();
         let found: Vec<_> = spikes(&record).iter().map(|s| (s.index, s.count, (s.height / 5.0).round())).collect();
         assert_eq!(found, [(777, 1, 1.0), (3000, 3, -4.0), (9000, 2, 1.0)]);
+    }
+
+    /// Drop-outs on the steepest part of a motion, where a straight line and a median lead far off, and nonsense in the
+    /// first and the last samples.
+    #[test]
+    fn drop_outs_on_a_slope_and_nonsense_at_the_ends_are_found() {
+        let decay = CoulombDecay { frequency: 2.2, amplitude: 10.0, deadband: 0.13, release: 0.0 };
+        let mut values: Vec<f64> = (0..1200).map(|i| decay.state(f64::from(i) * 4e-3).1).collect();
+        let clean = values.clone();
+        let crossing = (200..400).find(|i| clean[*i] * clean[i + 1] <= 0.0).unwrap();
+        values[crossing - 5..crossing - 3].fill(0.0);
+        values[600] = 0.0;
+        values[..3].copy_from_slice(&[30.0, 55.0, 41.0]);
+        values[1199] = -80.0;
+        let record = Record::sampled(250.0, values, Quantity::Velocity, "mm/s").unwrap();
+        let found: Vec<_> = spikes(&record).iter().map(|spike| (spike.index, spike.count)).collect();
+        assert_eq!(found, [(0, 3), (crossing - 5, 2), (600, 1), (1199, 1)]);
+        let bridged = without_spikes(&Examination::of(&record));
+        for (bridged, clean) in bridged.values().iter().zip(&clean) {
+            assert!((bridged - clean).abs() < 1.0, "{bridged} for {clean}");
+        }
     }
 
     #[test]
