@@ -9,7 +9,7 @@ use crate::numerics::{mean, range};
 use crate::units::Quantity;
 
 /// Rest at the beginning of a record, and the instant at which motion begins. A record that begins in motion, never
-/// moves, or rests for fewer than twenty samples has none.
+/// moves, or rests for fewer than twelve samples has none.
 ///
 /// Motion has begun where four samples in a row lie off the mean of the rest on the same side, by more than a
 /// band: five standard deviations of its white noise, four of all its noise, 1.5 steps of the converter, 0.5 % of
@@ -34,7 +34,7 @@ pub struct Release {
 }
 
 /// Fewest samples of rest that count as rest.
-const SHORTEST: usize = 20;
+const SHORTEST: usize = 12;
 /// Number of samples in a row that must leave the level of rest on the same side, so that no spike is a release.
 const PERSISTENT: usize = 4;
 
@@ -289,6 +289,15 @@ mod tests {
         assert_eq!(Examination::of(&constant).release(), None);
         let short = sampled(1000.0, 0.01, Quantity::Velocity, 0.0, |t| t);
         assert_eq!(Examination::of(&short).release(), None);
+    }
+
+    /// A magnet whose force dies away lets go of the machine after a rest of fifteen samples with noise.
+    #[test]
+    fn a_rest_of_fifteen_samples_counts() {
+        let decay = decay(0.045);
+        let velocity = sampled(333.0, 3.0, Quantity::Velocity, 0.3, |t| decay.state(t).1);
+        let found = Examination::of(&velocity).release().unwrap();
+        assert!((found.rest_end - 0.045).abs() < 3e-3, "{} s", found.rest_end);
     }
 
     #[test]
