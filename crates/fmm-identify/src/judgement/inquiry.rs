@@ -13,13 +13,14 @@ use crate::experiment::{Experiment, Experiments};
 use crate::fit::stages::Begin;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
-use crate::judgement::Comparison;
 use crate::judgement::change::with_change;
 use crate::judgement::comparison::explains;
 use crate::judgement::trials::{Families, Family};
+use crate::judgement::{Comparison, better_special_case};
 use crate::machine::Machine;
 use crate::machine::term::Term;
 use crate::problem::Problem;
+use crate::threads::on_all_threads;
 
 /// Observer of the trial steps of fits by laws of these names; a break ends a fit.
 type Observer<'a> = dyn FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send + 'a;
@@ -233,9 +234,11 @@ impl<'a> Inquiry<'a> {
             return Err(IdentifyError::contradiction(format!("{twice} is given twice; leave one out")));
         }
         let end = self.end();
-        let fit = |experiments: Experiments<'_>| {
+        let fit = |experiments: Experiments<'_>| -> Result<Vec<Identification>, IdentifyError> {
             let fit = |candidate| self.fit(candidate, experiments, Begin::Anywhere, &self.options, end);
-            candidates.iter().map(fit).collect::<Result<Vec<_>, _>>()
+            let mut identifications = candidates.iter().map(fit).collect::<Result<Vec<_>, _>>()?;
+            self.follow_special_cases(candidates, &mut identifications, experiments, &self.options, end);
+            Ok(identifications)
         };
         self.on_pool(|| {
             let identifications = fit(self.experiments)?;
@@ -273,6 +276,33 @@ impl<'a> Inquiry<'a> {
             }
         }
         work()
+    }
+
+    /// Fits those of the `identifications` of vibrations again that a special case of their law fits better, from where
+    /// that one has ended; of two fits the better stays.
+    pub(super) fn follow_special_cases(
+        &self,
+        candidates: &[Candidate],
+        identifications: &mut [Identification],
+        experiments: Experiments<'_>,
+        options: &Options,
+        end: Option<Instant>,
+    ) {
+        if matches!(experiments, Experiments::Forces(_)) || is_past(end) {
+            return;
+        }
+        let missed = |place: usize| Some((place, better_special_case(place, candidates, identifications)?));
+        let missed: Vec<_> = (0..candidates.len()).filter_map(missed).collect();
+        let fit = |(place, special): (usize, usize)| {
+            let begin = Begin::Extended(&identifications[special].fitted);
+            // A law that cannot begin there keeps its fit, and the sentence on it.
+            Some((place, self.fit(&candidates[place], experiments, begin, options, end).ok()?))
+        };
+        for (place, found) in on_all_threads(missed, fit).into_iter().flatten() {
+            if found.fit().sum_of_squares() < identifications[place].fit().sum_of_squares() {
+                identifications[place] = found;
+            }
+        }
     }
 
     /// The identification of `experiments` by one law, cancelled at the `end`.

@@ -63,15 +63,23 @@ pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identificatio
     if !found.fit().outcome().is_success() {
         sentences.push(format!("the fit {}", found.fit().outcome()));
     }
-    let least = found.fit().sum_of_squares() * (1.0 - ROUNDING_OF_SQUARES) - found.floor();
-    // Where other samples count, a special case may fit its own better.
-    let is_better = |(special, other): &(&Candidate, &Identification)| {
-        found.counts_as(other) && other.fit().sum_of_squares() < least && special.is_nested_in(&candidates[place])
-    };
-    if let Some((special, _)) = candidates.iter().zip(identifications).find(is_better) {
-        sentences.push(format!("the fit missed its lowest minimum, as {} fits better", special.name()));
+    if let Some(special) = better_special_case(place, candidates, identifications) {
+        sentences.push(format!("the fit missed its lowest minimum, as {} fits better", candidates[special].name()));
     }
     sentences
+}
+
+/// Place of the special case of the law at this place that fits best, if it fits better than the law.
+fn better_special_case(place: usize, candidates: &[Candidate], identifications: &[Identification]) -> Option<usize> {
+    let found = &identifications[place];
+    let sum = |other: &usize| identifications[*other].fit().sum_of_squares();
+    let least = sum(&place) * (1.0 - ROUNDING_OF_SQUARES) - found.floor();
+    // Where other samples count, a special case may fit its own better.
+    let is_better = |other: &usize| {
+        let is_special = candidates[*other].is_nested_in(&candidates[place]);
+        is_special && sum(other) < least && found.counts_as(&identifications[*other])
+    };
+    (0..candidates.len()).filter(is_better).min_by(|one, other| sum(one).total_cmp(&sum(other)))
 }
 
 impl Judgement {

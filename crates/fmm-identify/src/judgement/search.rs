@@ -58,6 +58,7 @@ impl Inquiry<'_> {
             self.require_known(decays)?;
         }
         let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, Start::Records)?;
+        run.follow_special_cases(&mut found);
         let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
         let mut decays = decays;
         if let Some(drifting) = &drifting {
@@ -78,6 +79,7 @@ impl Inquiry<'_> {
         if self.machine.steadiness().is_some() {
             run.allow_changes(&mut found)?;
         }
+        run.follow_special_cases(&mut found);
         let dropped = found.drop_unfinished(&self.at(SearchStage::Simple));
         tests.retain(|test| test.uncertainty.is_finite());
         left_out.extend(found.failures());
@@ -259,6 +261,14 @@ impl Run<'_, '_> {
             }
         }
         Ok(found)
+    }
+
+    /// Fits the laws again that a special case fits better.
+    fn follow_special_cases(&self, found: &mut Found) {
+        let most = MOST_ITERATIONS_OF_CHANGE.min(self.options.max_iterations());
+        let options = self.options.clone().with_max_iterations(most);
+        let Found { candidates, identifications, .. } = found;
+        self.inquiry.follow_special_cases(candidates, identifications, self.decays.into(), &options, self.end);
     }
 
     /// Adds fits by the laws that the friction over the speed allows, beside a spring that bends and a change of the
