@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_record::{Quantity, Record, Swings, noise};
+use nalgebra::{DMatrix, DVector};
 
 use crate::experiment::first_guess::FirstGuess;
 
@@ -93,35 +94,106 @@ fn zero_near(velocity: &Record, time: f64, guess: &FirstGuess) -> f64 {
     nearest.map_or(time, |place| velocity.start() + place * velocity.interval())
 }
 
+/// Samples on either side of a jump over which a sensor may smear it. Origin: chosen; anti-aliasing filters near half
+/// the sampling rate ring for about as many.
+const SMEARED: f64 = 3.0;
+
+/// Acceleration around reversals: it jumps there or not, and its white noise.
+struct AroundReversals {
+    is_smooth: bool,
+    noise: f64,
+}
+
+/// The `acceleration` of this `noise` around reversals at `times` (s); it is smooth if it shows that it jumps at none of
+/// them by more than twice the noise, which a sample beside a jump does not show.
+///
+/// Around each of them it is fitted by a vibration whose amplitude changes, and a step s:
+///
+/// ```text
+/// a(τ) = a₀ + (a₁ + a₂ τ) cos ωτ + a₃ sin ωτ + s sgn τ
+/// ```
+///
+/// Friction makes steps against the acceleration at all of them. Jumps between few samples look like noise, of which the
+/// residuals have less.
+fn around_reversals(times: &[f64], noise: f64, guess: &FirstGuess, acceleration: &Record) -> AroundReversals {
+    /// Part of the way to the next reversals that is fitted (1). Origin: what a sensor smears there is left out.
+    const PART: f64 = 0.9;
+    /// Standard uncertainties that a hidden step may have (1). Origin: one in 44 by chance.
+    const REACH: f64 = 2.0;
+    /// Step over noise that no sample shows (1). Origin: half of it is the noise.
+    const HIDDEN: f64 = 2.0;
+    let half_period = 0.5 / guess.frequency();
+    let (mut weights, mut steps, mut squares, mut freedom) = (0.0, 0.0, 0.0, 0.0);
+    for time in times {
+        let place = (time - acceleration.start()) * acceleration.rate();
+        let reach = PART * half_period * acceleration.rate();
+        let beside = |at: &usize| (*at as f64 - place).abs() > SMEARED;
+        let (low, high) = ((place - reach).ceil().max(0.0) as usize, (place + reach).max(0.0) as usize + 1);
+        let samples: Vec<usize> = (low..high.min(acceleration.len())).filter(beside).collect();
+        let row = |at: usize| {
+            let part = (at as f64 - place) / (half_period * acceleration.rate());
+            let (sine, cosine) = (PI * part).sin_cos();
+            [1.0, cosine, part * cosine, sine, part.signum()]
+        };
+        let shapes = DMatrix::from_fn(samples.len(), 5, |at, column| row(samples[at])[column]);
+        let values = DVector::from_fn(samples.len(), |at, _| acceleration.values()[samples[at]]);
+        let Some(inverse) = shapes.tr_mul(&shapes).cholesky().map(|cholesky| cholesky.inverse()) else { continue };
+        let fitted = &inverse * shapes.tr_mul(&values);
+        squares += (values - shapes * &fitted).norm_squared();
+        freedom += samples.len() as f64 - 5.0;
+        let weight = inverse[(4, 4)].recip();
+        weights += weight;
+        steps += weight * fitted[4] * fitted[1].signum();
+    }
+    if !(freedom > 0.0) {
+        return AroundReversals { is_smooth: false, noise };
+    }
+    let scatter = (squares / freedom).sqrt();
+    let noise = noise.min(scatter);
+    // The function sgn steps by two.
+    let (step, uncertainty) = (2.0 * steps.abs() / weights, 2.0 * scatter / weights.sqrt());
+    AroundReversals { is_smooth: step + REACH * uncertainty < HIDDEN * noise, noise }
+}
+
 /// The samples beside the changes of sign of a `velocity` near its `crossings` (s), the release and the stop among
-/// them, in order. `noise` is that of its acceleration.
-pub(super) fn jumps(crossings: &[f64], noise: f64, guess: &FirstGuess, velocity: &Record) -> Vec<Range<usize>> {
-    /// Samples on either side of a jump, over which a sensor may smear it, and standard deviations of its time.
-    const SAMPLES: f64 = 3.0;
+/// them, in order, if its `acceleration` jumps there, with the noise of the acceleration, at most `noise`.
+pub(super) fn jumps(
+    crossings: &[f64],
+    noise: f64,
+    guess: &FirstGuess,
+    velocity: &Record,
+    acceleration: &Record,
+) -> (Vec<Range<usize>>, f64) {
+    /// Standard deviations of the time of a jump.
     const DEVIATIONS: f64 = 4.0;
+    /// Part of a half cycle beside a jump that is left out at most for a sensor (1). Origin: chosen; with few samples
+    /// what is left must show the motion.
+    const MOST: f64 = 0.15;
     let times: Vec<f64> = crossings.iter().map(|time| zero_near(velocity, *time, guess)).collect();
     let half_period = 0.5 / guess.frequency();
-    // A release at a turning point is one, and so is the stop.
-    let release = times.first().map(|first| first - half_period);
+    let AroundReversals { is_smooth, noise } = around_reversals(&times, noise, guess, acceleration);
+    let smeared = SMEARED.min(MOST * half_period * velocity.rate());
+    // A release at a turning point is one, and so is the stop. Before the first crossing that shows there may be others.
+    let before = |first: &f64| ((first - velocity.start()) / half_period + 0.5).max(1.0) as usize;
+    let first = times.first().map(|first| (1..=before(first)).rev().map(move |k| first - k as f64 * half_period));
+    let earlier: Vec<f64> = first.into_iter().flatten().collect();
     let stop = times.last().map(|last| last + half_period);
     let angular = 2.0 * PI * guess.frequency();
     // Of a velocity that was integrated over about a period.
     let uncertain = noise * (2.0 * half_period * velocity.interval()).sqrt();
+    let earlier_count = earlier.len();
     let range = |(turn, time): (usize, f64)| {
-        let amplitude = guess.amplitudes.get(turn.saturating_sub(1)).or(guess.amplitudes.last());
+        let amplitude = guess.amplitudes.get(turn.saturating_sub(earlier_count)).or(guess.amplitudes.last());
         let amplitude = amplitude.copied().unwrap_or(f64::INFINITY);
         let time_uncertain = (uncertain / (angular * amplitude)).min(0.1 * half_period);
-        let reach = SAMPLES + DEVIATIONS * time_uncertain * velocity.rate();
+        let reach = smeared + DEVIATIONS * time_uncertain * velocity.rate();
         let place = (time - velocity.start()) * velocity.rate();
         let end = (place + reach).floor().max(-1.0) + 1.0;
         (place - reach).ceil().max(0.0) as usize..(end as usize).min(velocity.len())
     };
-    release
-        .into_iter()
-        .chain(times.iter().copied())
-        .chain(stop)
-        .enumerate()
-        .map(range)
-        .filter(|range| !range.is_empty())
-        .collect()
+    let shown = earlier_count..earlier_count + times.len();
+    let all = earlier.into_iter().chain(times).chain(stop).enumerate();
+    // A release and a stop jump without friction too.
+    let jumps = all.filter(|(turn, _)| !is_smooth || !shown.contains(turn));
+    (jumps.map(range).filter(|range| !range.is_empty()).collect(), noise)
 }

@@ -190,7 +190,10 @@ impl Experiment {
         self.kept.retain(|range| !range.is_empty());
         self.summary.samples = self.kept.iter().map(Range::len).sum();
         if self.summary.samples < FEWEST_SAMPLES {
-            return Err(IdentifyError::settling(self.summary.samples, FEWEST_SAMPLES, sensor.settling(frequency)));
+            return Err(match sensor.settling(frequency) {
+                time if time > 0.0 => IdentifyError::settling(self.summary.samples, FEWEST_SAMPLES, time),
+                _ => IdentifyError::too_short(self.summary.samples, FEWEST_SAMPLES),
+            });
         }
         self.sensor = sensor;
         Ok(self)
@@ -363,6 +366,36 @@ impl Experiment {
     pub(crate) fn up_to_last_peak(&self) -> Option<Self> {
         let (last, _) = *self.peaks.last()?;
         self.up_to(last)
+    }
+
+    /// The same acceleration between its reversals; `None` for other quantities, or if that leaves too little.
+    ///
+    /// A jump that passes a sample is a jump of the sum of squares, over which no gradient leads. Far from the reversals
+    /// there is none.
+    pub(crate) fn between_reversals(&self) -> Option<Self> {
+        /// Part of the way between two peaks of the velocity that is left out (1). Origin: chosen; first guesses of
+        /// reversals are a tenth of it off.
+        const PART: f64 = 0.5;
+        if self.record.quantity() != Quantity::Acceleration || self.driven.is_some() || self.lines.is_some() {
+            return None;
+        }
+        let half_period = 0.5 / self.guess.frequency();
+        let first = self.peaks.first()?.0 - half_period;
+        let is_far = |index: &usize| {
+            let part = (self.record.time(*index) - first) / half_period;
+            // Peaks are at whole numbers, reversals half-way between them.
+            (part - part.round()).abs() < 0.5 * (1.0 - PART)
+        };
+        let mut kept: Vec<Range<usize>> = Vec::new();
+        for index in self.kept.iter().cloned().flatten().filter(is_far) {
+            match kept.last_mut() {
+                Some(range) if range.end == index => range.end = index + 1,
+                _ => kept.push(index..index + 1),
+            }
+        }
+        let samples = kept.iter().map(Range::len).sum();
+        let summary = RecordSummary { samples, ..self.summary.clone() };
+        (samples >= FEWEST_SAMPLES).then(|| Self { kept, summary, ..self.clone() })
     }
 
     /// The first `share` of the ring-down (1), as much of it as can be fitted.

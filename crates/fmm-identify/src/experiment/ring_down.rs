@@ -33,7 +33,7 @@ impl Experiment {
     /// release, spikes and noise are looked for in the record less its hum.
     ///
     /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the
-    /// reversals: no accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more
+    /// reversals, if it jumps there: no accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more
     /// slowly than the motion.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl Experiment {
         };
         let begin = release.map_or(first, |release| beginning(&swings, release.rest_end, seen_quantity));
         let views = views.crop(begin, until)?;
-        let (record, seen, noise) = (views.record.record(), views.seen(), views.cleaned.noise());
+        let (record, seen, mut noise) = (views.record.record(), views.seen(), views.cleaned.noise());
 
         let start = record.start();
         // The integral of noise walks in the rest as well.
@@ -86,7 +86,8 @@ impl Experiment {
         let spikes = views.cleaned.spikes();
         let mut kept = without(record.len(), spikes.iter().map(|spike| spike.index..spike.index + spike.count));
         if is_acceleration {
-            let jumps = jumps(&times, noise, &guess, seen.record());
+            let (jumps, less) = jumps(&times, noise, &guess, seen.record(), views.cleaned.record());
+            noise = less;
             kept = kept.into_iter().flat_map(|range| between(range, &jumps)).collect();
         }
         let resolution = views.record.resolution();

@@ -255,6 +255,10 @@ fn fit_simple(problem: &Problem<'_>, options: &Options, observer: &mut Observer<
         begun.extend(problem.starts());
         starts.extend(fit(&problem, &begun).map(|fit| fit.values().to_vec()));
     }
+    if let Some(smooth) = problem.between_reversals() {
+        let found = fit(&problem.with_records(&smooth), &starts);
+        starts.extend(found.map(|fit| fit.values().to_vec()));
+    }
     fit(problem, &starts)
 }
 

@@ -50,6 +50,11 @@ impl Problem<'_> {
         any.then(|| complete.collect())
     }
 
+    /// The ring-downs between their reversals, if they are accelerations and that leaves enough.
+    pub(crate) fn between_reversals(&self) -> Option<Vec<Experiment>> {
+        self.experiments.iter().map(Experiment::between_reversals).collect()
+    }
+
     /// The same problem with laws that bend at no less than 1e-4 of the largest speed, and contacts on which the
     /// machine would vibrate at no more than 300 times its own frequency, and with exponents of no less than 0.02:
     /// beyond, a law is to the records as good as one that leaps, and its motion takes far longer to simulate.
