@@ -89,7 +89,7 @@ pub struct RecordSummary {
     pub held_offset: Option<f64>,
     /// Relative standard uncertainty of the instrument's gain (1).
     pub gain_uncertainty: f64,
-    /// When the motion was released (s), if the record begins at rest.
+    /// When the motion was released (s), if the record begins at rest or in a slow motion.
     pub release: Option<f64>,
     /// Half swings that stand out of the noise.
     pub half_swings: usize,

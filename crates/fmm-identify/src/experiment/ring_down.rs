@@ -24,13 +24,13 @@ impl Experiment {
     /// A ring-down: the part of a `record` of displacement, velocity or acceleration in which the machine vibrates
     /// freely.
     ///
-    /// If the record begins at rest, it is used from the first peak after the release on (of a displacement, from the
-    /// first crossing), as whatever held the machine may act on for a while; otherwise from its beginning. If it is
-    /// released or pushed again, it is used until shortly before that; if something else takes its motion, until then.
-    /// Of samples that are held or interpolated, the measured ones are used. Spikes of one to three samples are left
-    /// out, and where the steps of a converter exceed the noise, what follows the last turning point. Nothing is
-    /// smoothed and nothing is subtracted: smoothing would correlate the noise, and the offset is a parameter. Swings,
-    /// release, spikes and noise are looked for in the record less its hum.
+    /// If the record begins at rest, or the machine is moved slowly before, it is used from the first peak after the
+    /// release on (of a displacement, from the first crossing), as whatever held the machine may act on for a while;
+    /// otherwise from its beginning. If it is released or pushed again, it is used until shortly before that; if
+    /// something else takes its motion, until then. Of samples that are held or interpolated, the measured ones are used.
+    /// Spikes of one to three samples are left out, and where the steps of a converter exceed the noise, what follows the
+    /// last turning point. Nothing is smoothed and nothing is subtracted: smoothing would correlate the noise, and the
+    /// offset is a parameter. Swings, release, spikes and noise are looked for in the record less its hum.
     ///
     /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the
     /// reversals, if it jumps there: no accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more
@@ -67,7 +67,8 @@ impl Experiment {
             Offset::Rest => Some(release.ok_or(IdentifyError::no_rest())?.offset),
             Offset::Fixed(value) => Some(ModelError::require_finite("offset", value, "in the unit of the record")?),
         };
-        let begin = release.map_or(first, |release| beginning(&swings, release.rest_end, seen_quantity));
+        let released = release.map(|release| release.rest_end).or_else(|| pulled_until(&swings, first, seen_quantity));
+        let begin = released.map_or(first, |released| beginning(&swings, released, seen_quantity));
         let views = views.crop(begin, until)?;
         let (record, seen, mut noise) = (views.record.record(), views.seen(), views.cleaned.noise());
 
@@ -108,7 +109,7 @@ impl Experiment {
             unit: record.unit().to_owned(),
             held_offset,
             gain_uncertainty,
-            release: release.map(|release| release.rest_end),
+            release: released,
             half_swings: peaks.len(),
             amplitudes: (in_record * amplitudes[0], in_record * amplitudes[amplitudes.len() - 1]),
             frequency: guess.frequency(),
@@ -216,6 +217,19 @@ fn beginning(swings: &Swings, rest_end: f64, quantity: Quantity) -> f64 {
         Box::new(swings.peaks().iter().map(|peak| peak.time))
     };
     candidates.find(|time| *time > rest_end).unwrap_or(rest_end)
+}
+
+/// Release (s) of a machine that was moved otherwise since the `start` (s) of a record, such as pulled slowly, as its
+/// `swings` in the record of `quantity` show it; `None` if it vibrates from the start on.
+///
+/// A free vibration turns in every half cycle. The first turning point that shows is then that of the release.
+fn pulled_until(swings: &Swings, start: f64, quantity: Quantity) -> Option<f64> {
+    /// Half cycles without a turning point (1). Origin: one before the first that shows, and one that may be missed.
+    const QUIET: f64 = 2.0;
+    let (first, half_cycle) = (swings.peaks().first()?, 0.5 / swings.frequency()?);
+    // A velocity has its peak a quarter of a period after the turning point.
+    let since = if quantity == Quantity::Displacement { 0.0 } else { 0.5 * half_cycle };
+    (first.time - start > QUIET * half_cycle).then_some(first.time - since)
 }
 
 /// The parts of `range` between `holes`, which are in order.
@@ -358,6 +372,19 @@ mod tests {
             "{}",
             asked.summary()
         );
+    }
+
+    /// A machine that is pulled slowly for two seconds and let go is used from its release on.
+    #[test]
+    fn a_slow_pull_is_no_vibration() {
+        let free = released(&[2.0]);
+        let pulled = |t: f64| if t < 2.0 { 0.02 * (1.1 * t).sin() + 2e-4 * (5.0 * t).cos() } else { 0.0 };
+        let values = free.times().zip(free.values()).map(|(t, value)| value + pulled(t)).collect();
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
+        let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+        let summary = experiment.summary();
+        assert!(summary.release.is_some_and(|release| (release - 2.0).abs() < 0.02), "{summary}");
+        assert!((2.0..2.2).contains(&summary.from), "{summary}");
     }
 
     #[test]
