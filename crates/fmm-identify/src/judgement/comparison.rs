@@ -7,7 +7,7 @@ use crate::finding::{Finding, Source};
 use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::judgement::change::{FrictionChange, asks_for_change};
-use crate::judgement::filtering::filtering_sensor;
+use crate::judgement::filtering::{filtering_sensor, other_quantity};
 use crate::judgement::rules::{FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
@@ -68,6 +68,8 @@ impl Comparison {
         let sensor = filtering_sensor(decays, &identifications, preferred)
             .unwrap_or_else(|error| Some(Warning::left_out("a filter in the sensor", &error)));
         judgement.is_decided &= sensor.as_ref().is_none_or(|warning| matches!(warning, Warning::LeftOut { .. }));
+        let quantity = other_quantity(decays, &identifications[preferred]);
+        judgement.is_decided &= quantity.is_none();
         // The law may have taken a part of the drift.
         let drifts = decays.iter().any(Experiment::drifts);
         judgement.is_decided &= !(drifts && identifications[preferred].structure.is_correlated());
@@ -87,6 +89,7 @@ impl Comparison {
         warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
         warnings.extend(misled(&identifications, preferred));
         warnings.extend(sensor);
+        warnings.extend(quantity);
         let change = FrictionChange::of(&identifications[preferred], decays);
         let asks = || asks_for_change(&identifications[preferred], decays, SHOWN_CHANGE);
         if change.map_or_else(asks, |change| change.is_shown()) {

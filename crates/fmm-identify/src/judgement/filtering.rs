@@ -1,17 +1,22 @@
-//! A sensor that filters, as the explanation of residuals that a simple law leaves.
+//! A sensor that filters, or that measures another quantity, as the explanation of residuals that laws leave.
 
 use std::ops::ControlFlow;
 
 use fmm_fit::Options;
+use fmm_friction::CoulombViscous;
+use fmm_record::{Quantity, Record};
 
+use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::{Experiment, Sensor};
+use crate::experiment::{Experiment, Preparation, Sensor};
 use crate::fit::stages::Begin;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::judgement::rules::{
-    AS_GOOD, ENOUGH_SAMPLES, EXCESS_OF_FILTER, FILTER_ORDER, MOST_ITERATIONS_OF_FILTER, SHOWN_CORNER,
+    AS_GOOD, ENOUGH_SAMPLES, EXCESS_OF_FILTER, FAR, FILTER_ORDER, MOST_ITERATIONS_OF_FILTER, SHOWN_CORNER,
 };
+use crate::machine::Machine;
+use crate::problem::Problem;
 use crate::warning::Warning;
 
 /// Warning about a low-pass filter in the sensor, of which nothing was declared, that explains the records by a simple
@@ -39,6 +44,31 @@ pub(crate) fn filtering_sensor(
     }
     let is_explained = preferred.structure.is_structured() && !found.structure.is_correlated();
     Ok(is_explained.then_some(Warning::Beginning { law, time: settled }))
+}
+
+/// Warning about records that Coulomb and viscous friction explain if they are of another quantity than declared, and no
+/// law as they are; `None` for others.
+pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) -> Option<Warning> {
+    let declared = decays.first()?.record().quantity();
+    if !preferred.structure.is_structured() || decays.iter().any(|decay| decay.drive().is_some()) {
+        return None;
+    }
+    let as_quantity = |quantity: Quantity| {
+        let retaken = |decay: &Experiment| {
+            let record = decay.record();
+            let values = record.values().to_vec();
+            let record = Record::new(record.start(), record.interval(), values, quantity, "1").ok()?;
+            Experiment::ring_down(&record, &Preparation::default()).ok()
+        };
+        let decays = decays.iter().map(retaken).collect::<Option<Vec<_>>>()?;
+        let problem = Problem::of(&Candidate::of::<CoulombViscous>(), Machine::per_unit_mass(), &decays).ok()?;
+        let options = Options::default().with_max_iterations(MOST_ITERATIONS_OF_FILTER);
+        let found = Identification::of(&problem, Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(())).ok()?;
+        let is_explained = !found.structure.is_structured() && FAR * found.rms_residual() < preferred.rms_residual();
+        is_explained.then(|| Warning::OtherQuantity { quantity, declared, law: found.law().to_owned() })
+    };
+    let all = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration].into_iter();
+    all.filter(|quantity| *quantity != declared).find_map(as_quantity)
 }
 
 /// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that

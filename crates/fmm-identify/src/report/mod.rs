@@ -119,7 +119,9 @@ impl Comparison {
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
         };
-        let odd = preferred.warnings().iter().find(|warning| matches!(warning, Warning::Implausible { .. }));
+        let is_odd =
+            |warning: &&Warning| matches!(warning, Warning::Implausible { .. } | Warning::OtherQuantity { .. });
+        let odd = self.warnings().iter().find(is_odd);
         let odd = odd.map_or_else(String::new, |odd| format!("; but {odd}"));
         format!("{}: {found}{odd}; {sure}; {surer}.", preferred.law())
     }

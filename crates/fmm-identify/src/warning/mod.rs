@@ -10,6 +10,7 @@ pub use severity::Severity;
 
 use fmm_frf::Channel;
 use fmm_model::Rounded;
+use fmm_record::Quantity;
 
 /// Something that limits what the record can tell, or that was done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +45,15 @@ pub enum Warning {
         number: String,
         /// The unit that would make it plausible, as a sentence.
         remedy: String,
+    },
+    /// The records are explained to their noise if they are of another quantity.
+    OtherQuantity {
+        /// The quantity that explains them.
+        quantity: Quantity,
+        /// The declared one.
+        declared: Quantity,
+        /// The law that explains them.
+        law: String,
     },
     /// The amplitude does not fall.
     NoDecay,

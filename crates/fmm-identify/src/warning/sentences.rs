@@ -82,6 +82,10 @@ impl Warning {
                  the motion where it reverses and looks like friction; state the filter of the sensor, or let it be fitted",
                 Rounded::new(*corner, Some(*uncertainty))
             ),
+            Self::OtherQuantity { quantity, declared, law } => write!(
+                f,
+                "no law explains the record as {declared}, and {law} explains it as {quantity}: check the quantity of the channel"
+            ),
             Self::Beginning { law, time } => write!(
                 f,
                 "the beginning of the record is not described: without its first {time:.2} s {law} explains the rest; a sensor that \
@@ -92,13 +96,11 @@ impl Warning {
                 "the record is in {unit}, of which no mass in kg makes a friction force in N, and no normal load a coefficient mu; give \
                  the scale of the instrument in metres"
             ),
-            Self::DependsOnLaw { parameter, law, finding } => {
-                write!(
-                    f,
-                    "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \
-                 uncertainty was widened for that"
-                )
-            }
+            Self::DependsOnLaw { parameter, law, finding } => write!(
+                f,
+                "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard uncertainty was \
+                 widened for that"
+            ),
             Self::TimeLimit => write!(
                 f,
                 "the time that was given ended before all laws were tried; what is reported is the best of those that were"

@@ -27,6 +27,7 @@ impl Warning {
             Self::StructuredResiduals { .. }
             | Self::PeriodDependsOnAmplitude { .. }
             | Self::Implausible { .. }
+            | Self::OtherQuantity { .. }
             | Self::NoDecay
             | Self::Saturated { .. }
             | Self::OffsetStep { .. }

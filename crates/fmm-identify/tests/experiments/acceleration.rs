@@ -212,3 +212,27 @@ fn a_filter_that_is_not_stated_is_named() {
     let comparison = compare(&machine(), &[faithful], &candidates).unwrap();
     assert!(!comparison.warnings().iter().any(|warning| warning.to_string().contains("sensor")), "{comparison}");
 }
+
+/// Channels of each quantity that are declared as another one.
+#[test]
+fn another_quantity_that_explains_the_record_is_named() {
+    let motion = motion(22e-3, 1);
+    let channels = [
+        (Quantity::Displacement, motion.position().values(), 2e-5, Quantity::Velocity),
+        (Quantity::Velocity, motion.velocity().values(), 3e-4, Quantity::Displacement),
+    ];
+    for (quantity, values, noise, wrong) in channels {
+        for declared in [quantity, wrong] {
+            let record = record(values, noise, 1, declared, "1");
+            let experiment = Experiment::ring_down(&record, &Preparation::default()).unwrap();
+            let candidates = [Candidate::of::<Coulomb>(), Candidate::of::<CoulombViscous>()];
+            let comparison = compare(&fmm_identify::Machine::per_unit_mass(), &[experiment], &candidates).unwrap();
+            let named = comparison.warnings().iter().find_map(|warning| match warning {
+                Warning::OtherQuantity { quantity, .. } => Some(*quantity),
+                _ => None,
+            });
+            assert_eq!(named, (declared == wrong).then_some(quantity), "{declared:?}: {comparison}");
+            assert_eq!(comparison.headline().contains("check the quantity"), declared == wrong);
+        }
+    }
+}
