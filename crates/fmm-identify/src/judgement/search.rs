@@ -18,7 +18,7 @@ use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::inquiry::{Inquiry, is_past};
 use crate::judgement::rules::{
-    ALLOWED, ASKED_CHANGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_OF_CHANGE,
+    ALLOWED, ASKED_CHANGE, ENOUGH_TO_JUDGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_OF_CHANGE,
     MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
@@ -80,6 +80,7 @@ impl Inquiry<'_> {
             run.allow_changes(&mut found)?;
         }
         run.follow_special_cases(&mut found);
+        run.finish(&mut found);
         let dropped = found.drop_unfinished(&self.at(SearchStage::Simple));
         tests.retain(|test| test.uncertainty.is_finite());
         left_out.extend(found.failures());
@@ -263,23 +264,40 @@ impl Run<'_, '_> {
         Ok(found)
     }
 
+    /// Options of a fit that is compared with others.
+    fn limited(&self, most: usize) -> Options {
+        let rows: usize = self.decays.iter().map(Experiment::rows).sum();
+        let options = self.inquiry.options.clone().with_cost_tolerance(ENOUGH_TO_JUDGE / rows as f64);
+        let most = most.min(options.max_iterations());
+        options.with_polish_steps(0).with_restarts(0).with_max_iterations(most)
+    }
+
     /// Fits the laws again that a special case fits better.
     fn follow_special_cases(&self, found: &mut Found) {
-        let most = MOST_ITERATIONS_OF_CHANGE.min(self.options.max_iterations());
-        let options = self.options.clone().with_max_iterations(most);
+        let options = self.limited(MOST_ITERATIONS_OF_CHANGE);
         let Found { candidates, identifications, .. } = found;
         self.inquiry.follow_special_cases(candidates, identifications, self.decays.into(), &options, self.end);
+    }
+
+    /// Follows the preferred law to its end: fits of a search end where their misfits are known well enough.
+    fn finish(&self, found: &mut Found) {
+        let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return };
+        let place = judgement.preferred;
+        let begin = Begin::Extended(&found.identifications[place].fitted);
+        let end = self.inquiry.fit(&found.candidates[place], self.decays.into(), begin, self.options, self.end);
+        if let Ok(end) = end {
+            let own = &mut found.identifications[place];
+            if end.fit().outcome().is_success() && end.fit().sum_of_squares() <= own.fit().sum_of_squares() {
+                *own = end;
+            }
+        }
     }
 
     /// Adds fits by the laws that the friction over the speed allows, beside a spring that bends and a change of the
     /// friction where the records ask for these whatever the friction; then, where more is asked for, by laws with
     /// presliding. A simple law `changes` if its friction changes during the records.
     fn fit_further(&self, found: &mut Found, tests: &mut Vec<ScoreTest>, changes: bool) -> Result<(), IdentifyError> {
-        let limited = |most: usize| {
-            let options = &self.inquiry.options;
-            options.clone().with_max_iterations(most.min(options.max_iterations()))
-        };
-        let (of_speed, of_state) = (limited(MOST_ITERATIONS), limited(MOST_ITERATIONS_WITH_STATE));
+        let (of_speed, of_state) = (self.limited(MOST_ITERATIONS), self.limited(MOST_ITERATIONS_WITH_STATE));
         // A contact that yields is a spring that softens: it may be what another spring explains as well.
         let preslides_alone = self.shows_presliding(tests);
         let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, self.decays).ok();
