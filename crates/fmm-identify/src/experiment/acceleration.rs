@@ -104,8 +104,8 @@ struct AroundReversals {
     noise: f64,
 }
 
-/// The `acceleration` of this `noise` around reversals at `times` (s); it is smooth if it shows that it jumps at none of
-/// them by more than twice the noise, which a sample beside a jump does not show.
+/// The `acceleration` of this `noise` around reversals at `times` (s); it is smooth if it shows that it jumps at none
+/// of them by more than twice the noise, which a sample beside a jump does not show.
 ///
 /// Around each of them it is fitted by a vibration whose amplitude changes, and a step s:
 ///
@@ -113,8 +113,8 @@ struct AroundReversals {
 /// a(τ) = a₀ + (a₁ + a₂ τ) cos ωτ + a₃ sin ωτ + s sgn τ
 /// ```
 ///
-/// Friction makes steps against the acceleration at all of them. Jumps between few samples look like noise, of which the
-/// residuals have less.
+/// Friction makes steps against the acceleration at all of them. Jumps between few samples look like noise, of which
+/// the residuals have less.
 fn around_reversals(times: &[f64], noise: f64, guess: &FirstGuess, acceleration: &Record) -> AroundReversals {
     /// Part of the way to the next reversals that is fitted (1). Origin: what a sensor smears there is left out.
     const PART: f64 = 0.9;
@@ -173,7 +173,8 @@ pub(super) fn jumps(
     let half_period = 0.5 / guess.frequency();
     let AroundReversals { is_smooth, noise } = around_reversals(&times, noise, guess, acceleration);
     let smeared = SMEARED.min(MOST * half_period * velocity.rate());
-    // A release at a turning point is one, and so is the stop. Before the first crossing that shows there may be others.
+    // A release at a turning point is one, and so is the stop. Before the first crossing that shows there may be
+    // others.
     let before = |first: &f64| ((first - velocity.start()) / half_period + 0.5).max(1.0) as usize;
     let first = times.first().map(|first| (1..=before(first)).rev().map(move |k| first - k as f64 * half_period));
     let earlier: Vec<f64> = first.into_iter().flatten().collect();

@@ -370,8 +370,8 @@ impl Experiment {
 
     /// The same acceleration between its reversals; `None` for other quantities, or if that leaves too little.
     ///
-    /// A jump that passes a sample is a jump of the sum of squares, over which no gradient leads. Far from the reversals
-    /// there is none.
+    /// A jump that passes a sample is a jump of the sum of squares, over which no gradient leads. Far from the
+    /// reversals there is none.
     pub(crate) fn between_reversals(&self) -> Option<Self> {
         /// Part of the way between two peaks of the velocity that is left out (1). Origin: chosen; first guesses of
         /// reversals are a tenth of it off.

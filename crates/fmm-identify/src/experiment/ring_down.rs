@@ -27,14 +27,15 @@ impl Experiment {
     /// If the record begins at rest, or the machine is moved slowly before, it is used from the first peak after the
     /// release on (of a displacement, from the first crossing), as whatever held the machine may act on for a while;
     /// otherwise from its beginning. If it is released or pushed again, it is used until shortly before that; if
-    /// something else takes its motion, until then. Of samples that are held or interpolated, the measured ones are used.
-    /// Spikes of one to three samples are left out, and where the steps of a converter exceed the noise, what follows the
-    /// last turning point. Nothing is smoothed and nothing is subtracted: smoothing would correlate the noise, and the
-    /// offset is a parameter. Swings, release, spikes and noise are looked for in the record less its hum.
+    /// something else takes its motion, until then. Of samples that are held or interpolated, the measured ones are
+    /// used. Spikes of one to three samples are left out, and where the steps of a converter exceed the noise, what
+    /// follows the last turning point. Nothing is smoothed and nothing is subtracted: smoothing would correlate the
+    /// noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less its
+    /// hum.
     ///
     /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the
-    /// reversals, if it jumps there: no accelerometer follows a jump. Its swings are looked for in its integral, less what drifts more
-    /// slowly than the motion.
+    /// reversals, if it jumps there: no accelerometer follows a jump. Its swings are looked for in its integral, less
+    /// what drifts more slowly than the motion.
     ///
     /// # Errors
     /// [`IdentifyError`] if the record is no motion, too short, constant, or shows fewer than two half swings, or if

@@ -46,8 +46,8 @@ pub(crate) fn filtering_sensor(
     Ok(is_explained.then_some(Warning::Beginning { law, time: settled }))
 }
 
-/// Warning about records that Coulomb and viscous friction explain if they are of another quantity than declared, and no
-/// law as they are; `None` for others.
+/// Warning about records that Coulomb and viscous friction explain if they are of another quantity than declared, and
+/// no law as they are; `None` for others.
 pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) -> Option<Warning> {
     let declared = decays.first()?.record().quantity();
     if !preferred.structure.is_structured() || decays.iter().any(|decay| decay.drive().is_some()) {

@@ -84,7 +84,8 @@ impl Warning {
             ),
             Self::OtherQuantity { quantity, declared, law } => write!(
                 f,
-                "no law explains the record as {declared}, and {law} explains it as {quantity}: check the quantity of the channel"
+                "no law explains the record as {declared}, and {law} explains it as {quantity}: check the quantity of the \
+                 channel"
             ),
             Self::Beginning { law, time } => write!(
                 f,
@@ -98,8 +99,8 @@ impl Warning {
             ),
             Self::DependsOnLaw { parameter, law, finding } => write!(
                 f,
-                "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard uncertainty was \
-                 widened for that"
+                "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \
+                 uncertainty was widened for that"
             ),
             Self::TimeLimit => write!(
                 f,

@@ -9,12 +9,12 @@ use crate::units::Quantity;
 
 /// Spike or drop-out: up to three samples in a row that stand off the motion around them.
 ///
-/// A sample is off if it differs from the median of the seven samples around it by more than eight standard
-/// deviations of the noise, three steps of the converter, 0.1 % of the record's range, and four times the difference
-/// that all but one sample in 200 have. The last limit passes a fast motion or its sharp onset. The first or last
-/// samples, up to three, are off if they lie as far from the straight line through the two samples beside them, and jump
-/// there by four times as much as the values move beside; those of an acceleration or a force, which may jump, are not
-/// judged. A pulse of up to three samples in a force record is a spike in this sense.
+/// A sample is off if it differs from the median of the seven samples around it by more than eight standard deviations
+/// of the noise, three steps of the converter, 0.1 % of the record's range, and four times the difference that all but
+/// one sample in 200 have. The last limit passes a fast motion or its sharp onset. The first or last samples, up to
+/// three, are off if they lie as far from the straight line through the two samples beside them, and jump there by four
+/// times as much as the values move beside; those of an acceleration or a force, which may jump, are not judged. A
+/// pulse of up to three samples in a force record is a spike in this sense.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Spike {
@@ -169,8 +169,8 @@ fn culprit(values: &[f64], suspect: Range<usize>, limit: f64) -> Option<Range<us
         }
         (suspect.start - from..suspect.end - from).all(|i| (bridged[i] - median_around(&bridged, i)).abs() <= limit)
     };
-    // A spike jumps away and jumps back, much farther than the samples beside it move off their straight lines. A motion
-    // that stops or sets in does one of the two, and a smooth peak neither.
+    // A spike jumps away and jumps back, much farther than the samples beside it move off their straight lines. A
+    // motion that stops or sets in does one of the two, and a smooth peak neither.
     let returns = |run: &Range<usize>| {
         let bend = |i: usize, towards: usize, next: usize| values[i] - 2.0 * values[towards] + values[next];
         let (away, back) = (bend(run.start, run.start - 1, run.start - 2), bend(run.end - 1, run.end, run.end + 1));
