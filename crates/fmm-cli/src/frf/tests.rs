@@ -288,3 +288,49 @@ fn files_that_are_something_else() {
     assert!(!UffFile::read(&path).unwrap().warnings().is_empty());
     assert!(!read(&ACCELERATION, &path).warnings.is_empty());
 }
+
+/// A blow and the velocity of modes of these frequencies (Hz), with a damping ratio of 1 %.
+fn struck(frequencies: &[f64]) -> Trial {
+    const RATE: f64 = 8192.0;
+    let time = |i: usize| i as f64 / RATE;
+    let force = |i: usize| if (100..103).contains(&i) { 50.0 } else { 0.0 };
+    // A step of the force makes a sine in each mode; the blow is one up and one down.
+    let step = |t: f64, frequency: &f64| {
+        let angular = std::f64::consts::TAU * frequency;
+        if t > 0.0 { (-0.01 * angular * t).exp() * (angular * t).sin() / angular } else { 0.0 }
+    };
+    let velocity = |i: usize| {
+        let noise = 1e-6 * (1.7 * (i * i % 10_007) as f64).sin();
+        let of_mode = |mode: &f64| 50.0 * (step(time(i) - time(100), mode) - step(time(i) - time(103), mode));
+        frequencies.iter().map(of_mode).sum::<f64>() + noise
+    };
+    let record = |at: &dyn Fn(usize) -> f64, quantity: Quantity, unit: &str| {
+        Record::sampled(RATE, (0..8192).map(at).collect(), quantity, unit).unwrap()
+    };
+    Trial {
+        name: "struck".to_owned(),
+        force: record(&force, Quantity::Force, "N"),
+        response: record(&velocity, Quantity::Velocity, "m/s"),
+        origin: String::new(),
+        warnings: Vec::new(),
+    }
+}
+
+/// Two modes that make one peak are said by what the fit of one leaves, and the change with the lines is in its
+/// uncertainty; one alone is not.
+#[test]
+fn two_modes_in_one_peak_are_said() {
+    let analysed = |modes: &[f64]| {
+        let trials = [struck(modes), struck(modes)];
+        Analysis::of(&trials, ResponseForm::Mobility, Window::None, 0.01).unwrap()
+    };
+    let is_said = |analysis: &Analysis| {
+        analysis.warnings.iter().any(|warning| warning.contains("Hz by one mode leaves") && !warning.contains("2731"))
+    };
+    let (one, two) = (analysed(&[1000.0]), analysed(&[994.0, 1010.0]));
+    assert!(!is_said(&one), "{:?}", one.warnings);
+    assert!(is_said(&two), "{:?}", two.warnings);
+    let [of_one, of_two] = [&one, &two].map(|analysis| analysis.peaks[0].fit.unwrap().natural_frequency);
+    assert!((of_one.value - 1000.0).abs() < 0.2 && of_one.uncertainty < 0.2, "{of_one}");
+    assert!(of_two.uncertainty > 5.0 * of_one.uncertainty, "{of_two} beside {of_one}");
+}
