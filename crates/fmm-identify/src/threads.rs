@@ -1,6 +1,7 @@
-//! Work on all threads, and idle memory for it.
+//! Work on all threads, the end of its time, and idle memory for it.
 
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -12,6 +13,11 @@ pub(crate) fn on_all_threads<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -
     return items.into_par_iter().with_max_len(1).map(work).collect();
     #[cfg(not(feature = "rayon"))]
     items.into_iter().map(work).collect()
+}
+
+/// True from the `end` on.
+pub(crate) fn is_past(end: Option<Instant>) -> bool {
+    end.is_some_and(|end| Instant::now() >= end)
 }
 
 /// Memory of earlier work, lent to one piece of work at a time; as much as ever works at once.

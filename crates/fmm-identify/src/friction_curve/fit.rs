@@ -1,8 +1,9 @@
 //! The fit of a friction curve: linearised again at its mean until it stays.
 
 use std::ops::ControlFlow;
+use std::time::Instant;
 
-use fmm_fit::{EvaluationError, Options, Residuals, autocorrelation_time};
+use fmm_fit::{EvaluationError, Options, Progress, Residuals, autocorrelation_time};
 use fmm_friction::CoulombViscous;
 use fmm_sim::{Channels, Sampling};
 use nalgebra::DVector;
@@ -19,6 +20,7 @@ use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::rules::{CORRELATION_TIME, EXCESS};
+use crate::threads::is_past;
 
 /// A fitted friction curve in the units of its problem.
 pub(super) struct CurveFit {
@@ -57,10 +59,17 @@ pub(super) struct Levelled<'a> {
 
 impl<'a> Levelled<'a> {
     /// The problem of `experiments` on `machine`, with these terms beside the levels.
-    pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &'a [Experiment]) -> Result<Self, IdentifyError> {
+    pub(super) fn of(
+        machine: &Machine,
+        beside: &Terms,
+        experiments: &'a [Experiment],
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
         let simple = Problem::of(&Candidate::of::<CoulombViscous>().with(beside.clone()), *machine, experiments)?;
         let options = Options::default();
-        let line = fit_begun(&simple, Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()))?;
+        let mut observer =
+            |_: &Progress<'_>| if is_past(end) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let line = fit_begun(&simple, Begin::Anywhere, &options, &mut observer)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         let path = Path::of(&simple, line.values()).map_err(failure)?;
         let top = path.speeds.iter().copied().fold(0.0, f64::max);
@@ -84,10 +93,10 @@ impl<'a> Levelled<'a> {
 impl CurveFit {
     /// The curve that `experiments` on `machine` share, with these terms beside it.
     pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments)?;
+        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments, None)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            let few = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS)?;
+            let few = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS, None)?;
             // What does not settle with few samples does not with all of them.
             if !few.has_ended {
                 return Err(not_settled());
@@ -95,7 +104,7 @@ impl CurveFit {
             values = few.values;
         }
         let Settled { values, near, likelihood, posterior, has_ended } =
-            Settled::of(problem, values, scale, MOST_STEPS)?;
+            Settled::of(problem, values, scale, MOST_STEPS, None)?;
         // The intervals hold near the curve about which the record was linearised, and nowhere else.
         if !has_ended {
             return Err(not_settled());
@@ -132,18 +141,22 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often, first for
+    /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often and before the `end`, first for
     /// white noise, then for that of the residuals.
     pub(super) fn of(
         problem: &Problem<'_>,
         mut values: Vec<f64>,
         scale: f64,
         most: usize,
+        end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         let levels = problem.table.law..problem.table.law + LEVELS;
         let (prior, mut noise, mut steps) = (Prior::new(), None, 0);
         loop {
+            if is_past(end) {
+                return Err(not_settled());
+            }
             let near = Linearised::of(problem, &values, levels.start).map_err(failure)?;
             let (mut likelihood, mut posterior) = near.posterior(problem, &values, scale, &prior, noise.as_ref())?;
             let is_near = |posterior: &Posterior| {

@@ -1,6 +1,7 @@
 //! Laws projected on the friction over the speed that records show: their misfit, and where a fit by them begins.
 
 use std::ops::Range;
+use std::time::Instant;
 
 use fmm_fit::{Estimate, EvaluationError, Options, Residuals, solve};
 use fmm_friction::CoulombViscous;
@@ -59,12 +60,20 @@ pub(crate) struct Projected {
 
 impl ShownFriction {
     /// The friction over the speed that `experiments` on `machine` share, with `terms` beside it.
-    pub(crate) fn of(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        let Levelled { problem, values, top, scale, line, .. } = Levelled::of(machine, &terms, experiments)?;
+    ///
+    /// # Errors
+    /// As for a curve, and where it has not settled before the `end`.
+    pub(crate) fn of(
+        machine: &Machine,
+        terms: Terms,
+        experiments: &[Experiment],
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
+        let Levelled { problem, values, top, scale, line, .. } = Levelled::of(machine, &terms, experiments, end)?;
         let thinned = problem.thinned();
         let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
         let seen = few.as_ref().unwrap_or(&problem);
-        let settled = Settled::of(seen, values, scale, MOST_STEPS_OF_PROJECTION)?;
+        let settled = Settled::of(seen, values, scale, MOST_STEPS_OF_PROJECTION, end)?;
         let is_structured = settled.near.excess(seen).is_some();
         let eigen = settled.likelihood.precision.clone().symmetric_eigen();
         let least = LOST * eigen.eigenvalues.max();
@@ -79,7 +88,7 @@ impl ShownFriction {
 
     /// The same with what else acts: the terms that explain most of the residuals, again and again as long as these are
     /// no noise and some terms explain enough of them; `None` if nothing does.
-    pub(crate) fn beside(&self, machine: &Machine, experiments: &[Experiment]) -> Option<Self> {
+    pub(crate) fn beside(&self, machine: &Machine, experiments: &[Experiment], end: Option<Instant>) -> Option<Self> {
         const FURTHER: [&[Term]; 3] =
             [&[Term::CubicSpring], &[Term::CubicSpring, Term::QuinticSpring], &[Term::Change]];
         let mut found: Option<Self> = None;
@@ -89,7 +98,7 @@ impl ShownFriction {
             let further =
                 FURTHER.map(|terms| terms.iter().filter(is_free).copied().fold(shown.terms.clone(), Terms::with));
             let further = further.into_iter().filter(|terms| shown.is_structured && *terms != shown.terms);
-            let further = on_all_threads(further.collect(), |terms| Self::of(machine, terms, experiments).ok());
+            let further = on_all_threads(further.collect(), |terms| Self::of(machine, terms, experiments, end).ok());
             let worth = |further: &Self| {
                 let added = further.terms.iter().count() - shown.terms.iter().count();
                 further.gain(shown) - EXPLAINED * added as f64
@@ -297,7 +306,7 @@ mod tests {
         let record = Record::new(0.0, 2e-3, velocity, Quantity::Velocity, "m/s").unwrap();
         let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
         let machine = Machine::per_unit_mass();
-        let shown = ShownFriction::of(&machine, Terms::NONE, &decays).unwrap();
+        let shown = ShownFriction::of(&machine, Terms::NONE, &decays, None).unwrap();
         let problem = |candidate| Problem::of(&candidate, machine, &decays).unwrap();
         let own = problem(Candidate::of::<Stribeck>().holding("exponent", 2.0).unwrap());
         let projected = shown.projected(&own, &[]).unwrap();

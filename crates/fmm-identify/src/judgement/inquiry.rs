@@ -20,7 +20,7 @@ use crate::judgement::{Comparison, better_special_case};
 use crate::machine::Machine;
 use crate::machine::term::Term;
 use crate::problem::Problem;
-use crate::threads::on_all_threads;
+use crate::threads::{is_past, on_all_threads};
 
 /// Observer of the trial steps of fits by laws of these names; a break ends a fit.
 type Observer<'a> = dyn FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send + 'a;
@@ -321,9 +321,4 @@ impl<'a> Inquiry<'a> {
             _ => ControlFlow::Break(()),
         })
     }
-}
-
-/// True from the `end` on.
-pub(super) fn is_past(end: Option<Instant>) -> bool {
-    end.is_some_and(|end| Instant::now() >= end)
 }

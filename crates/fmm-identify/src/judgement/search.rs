@@ -16,7 +16,7 @@ use crate::judgement::Judgement;
 use crate::judgement::change::{asks_for_change, with_change};
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
-use crate::judgement::inquiry::{Inquiry, is_past};
+use crate::judgement::inquiry::Inquiry;
 use crate::judgement::rules::{
     ALLOWED, ASKED_CHANGE, ENOUGH_TO_JUDGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_OF_CHANGE,
     MOST_ITERATIONS_WITH_STATE, SEEN_PRESLIDING, STEPS_OF_PRESLIDING,
@@ -27,7 +27,7 @@ use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::starts::Fitted;
-use crate::threads::on_all_threads;
+use crate::threads::{is_past, on_all_threads};
 use crate::warning::Warning;
 
 impl Inquiry<'_> {
@@ -282,6 +282,9 @@ impl Run<'_, '_> {
     /// Follows the preferred law to its end: fits of a search end where their misfits are known well enough.
     fn finish(&self, found: &mut Found) {
         let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return };
+        if is_past(self.end) {
+            return;
+        }
         let place = judgement.preferred;
         let begin = Begin::Extended(&found.identifications[place].fitted);
         let end = self.inquiry.fit(&found.candidates[place], self.decays.into(), begin, self.options, self.end);
@@ -300,7 +303,7 @@ impl Run<'_, '_> {
         let (of_speed, of_state) = (self.limited(MOST_ITERATIONS), self.limited(MOST_ITERATIONS_WITH_STATE));
         // A contact that yields is a spring that softens: it may be what another spring explains as well.
         let preslides_alone = self.shows_presliding(tests);
-        let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, self.decays).ok();
+        let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, self.decays, self.end).ok();
         // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
         // comparison.
         let is_filtered = |found: &Found| {
@@ -308,7 +311,7 @@ impl Run<'_, '_> {
             behind.is_some_and(|(found, _)| !found.structure.is_correlated())
         };
         let structured = plain.as_ref().filter(|plain| plain.is_structured && !is_filtered(found));
-        let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, self.decays));
+        let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, self.decays, self.end));
         let shown = further.as_ref().or(plain.as_ref());
         let beside = shown.map_or(Terms::NONE, |shown| shown.terms.clone());
         let of_speed = Run { options: &of_speed, beside: &beside, ..*self };
@@ -320,7 +323,7 @@ impl Run<'_, '_> {
             *tests = of_speed.score_tests(found).0.into_iter().chain(spring).collect();
         }
         if found.is_structured() && beside.has_spring() {
-            found.add(self.fit(self.candidates(beside_line(&CORNERS))?, Start::Records)?);
+            found.add(self.fit(self.candidates(beside_line(&CORNERS))?, Start::Further)?);
         }
         let allowed = of_speed.allowed(found, shown)?;
         found.add(of_speed.fit(allowed, Start::of(shown, &[]))?);
