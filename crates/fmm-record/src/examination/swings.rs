@@ -183,10 +183,11 @@ fn reach(half: f64) -> usize {
     ((half / 6.0).round() as usize).max(1)
 }
 
-/// The samples within reach of `at`.
+/// The samples within reach of `at`; at an end of the record as many on the one side.
 fn around(at: f64, half: f64, length: usize) -> std::ops::Range<usize> {
-    let centre = at.round().max(0.0) as usize;
-    centre.saturating_sub(reach(half))..(centre + reach(half) + 1).min(length)
+    let (centre, count) = (at.round().max(0.0) as usize, (2 * reach(half) + 1).min(length));
+    let start = centre.saturating_sub(reach(half)).min(length - count);
+    start..start + count
 }
 
 /// Fits every turning point, given to the sample. The lengths of the half cycles come from the turning points as
@@ -265,8 +266,8 @@ fn begins_held(values: &[f64], fitted: &[Fitted]) -> bool {
     let height = |from: f64, to: f64| {
         let (from, to) = ((first.at + from * half).max(0.0), first.at + to * half);
         let is_enough = to - from >= (0.25 * half).max(1.0);
-        is_enough
-            .then(|| (mean(&values[from as usize..(to as usize).min(values.len())]) - centre) / (first.value - centre))
+        let inside = from.ceil() as usize..(to.floor() as usize + 1).min(values.len());
+        is_enough.then(|| (mean(&values[inside]) - centre) / (first.value - centre))
     };
     height(-1.0, -0.25).is_some_and(|before| (before - 1.0).abs() < 0.5)
         || height(0.25, 0.5).is_some_and(|after| after > 0.75)
@@ -556,6 +557,21 @@ mod tests {
             let [first, second] = swings.peaks() else { panic!("{:?}", swings.peaks()) };
             assert!(first.time.abs() < 4e-3 && (first.value - 10.0).abs() < 0.1, "{first:?}");
             assert!((second.value + 5.0).abs() < 0.1, "{second:?}");
+        }
+    }
+
+    /// Ten samples a period, from the first peak on.
+    #[test]
+    fn few_samples_show_every_peak() {
+        let decay = CoulombDecay { frequency: 10.0, amplitude: 10.0, deadband: 0.7, release: 0.0 };
+        for rate in [80.0, 100.0, 140.0, 400.0] {
+            let count = (rate * 0.36) as i32;
+            let position = |i: i32| decay.state(f64::from(i) / rate).0;
+            let record =
+                Record::sampled(rate, (0..count).map(position).collect(), Quantity::Displacement, "mm").unwrap();
+            let swings = Swings::of(&record);
+            assert!((7..=8).contains(&swings.peaks().len()), "{rate} Hz: {:?}", swings.peaks());
+            assert!((swings.peaks()[0].value - 10.0).abs() < 0.5, "{rate} Hz: {:?}", swings.peaks()[0]);
         }
     }
 
