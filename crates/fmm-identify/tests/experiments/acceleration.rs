@@ -98,7 +98,7 @@ fn few_accelerations_are_fitted_to_the_end() {
             [identify::<CoulombViscous>(&machine(), &experiment), identify::<Coulomb>(&machine(), &experiment)];
         let (whole, special) = (whole.unwrap(), special.unwrap());
         let sums = [&whole, &special].map(|found| found.fit().sum_of_squares());
-        assert!(sums[0] <= sums[1], "seed {seed}: {sums:?}");
+        assert!(sums[0] <= sums[1] * (1.0 + 1e-9), "seed {seed}: {sums:?}");
         let (low, high) = whole.interval("mu", 0.95).unwrap();
         (low..=high).contains(&COEFFICIENT)
     });
