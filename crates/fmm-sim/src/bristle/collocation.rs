@@ -91,7 +91,7 @@ impl<D: Scalar> Collocation<D> {
             *force = piece.force(span.begin + node * span.length);
         }
         self.predict(motion, field, branch, span);
-        let forces = field.force_size(self.forces[0], branch, &motion.begin);
+        let forces = field.force_size(piece, span.begin, branch, &motion.begin);
         let rounding = ROUNDING / span.tolerance * forces / field.oscillator.mass().value() * span.length;
         motion.rescale(span, rounding);
         if !self.prepare(motion, field, branch, span) {

@@ -64,7 +64,7 @@ impl<D: Scalar> Explicit<D> {
             // The end alone gives the extent of the step, the scale of its errors.
             *increments = [mean_rate(rates) * length; NODES.len()];
         }
-        let forces = field.force_size(piece.force(time), branch, &motion.begin);
+        let forces = field.force_size(piece, time, branch, &motion.begin);
         let rounding = ROUNDING / tolerance * forces / field.oscillator.mass().value() * length;
         motion.rescale(span, rounding);
         let error = self.error(motion, length) / (SAFETY * tolerance);

@@ -1,10 +1,11 @@
 //! The equations of motion of one half cycle: the oscillator, the bristles, and their Jacobian.
 
 use fmm_friction::{BristleLaw, Regime};
-use fmm_model::{Oscillator, Scalar};
+use fmm_model::{Oscillator, Restoring, Scalar};
 
+use crate::bristle::hidden::depends_on_speed;
 use crate::error::SimulationError;
-use crate::mechanics::Spring;
+use crate::mechanics::{ForceWave, Piece, Spring};
 use crate::scenario::Direction;
 
 /// Smooth branch of the law on which the contact moves.
@@ -54,6 +55,8 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     centre: Vec<f64>,
     /// True for each state whose rate has a corner at zero.
     bends: Vec<bool>,
+    /// True if the law is not one of the path alone.
+    pub(super) depends_on_speed: bool,
     /// True for each state that has not yet come back through zero in this half cycle; it stays below zero until then.
     pub(super) below: Vec<bool>,
     /// True for each state that has reached its bound for the rest of this half cycle.
@@ -73,6 +76,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
             per_mass: D::from(1.0) / oscillator.mass(),
             linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
             bends: Self::corners(law, per_second(oscillator)),
+            depends_on_speed: depends_on_speed(law),
             mirrored: zeros.clone(),
             below: vec![false; zeros.len()],
             saturated: vec![false; zeros.len()],
@@ -84,6 +88,15 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
     /// Number of unknowns: x, v and the states of the law.
     pub(super) fn size(&self) -> usize {
         2 + self.rate.len()
+    }
+
+    /// Angular frequency (rad/s) of small vibrations about `position` on a spring that is not linear; 0 if it is, or
+    /// pushes away.
+    pub(super) fn local_angular(&self, position: D) -> f64 {
+        match self.oscillator.restoring() {
+            Restoring::Linear => 0.0,
+            _ => (self.spring.slope(position) * self.per_mass.value()).max(0.0).sqrt(),
+        }
     }
 
     /// Notes the states that are to come back through zero after the beginning of a step.
@@ -248,11 +261,17 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         Some(left + whole)
     }
 
-    /// Sum of the magnitudes of the forces (N) that `rates` adds up, whose rounding the acceleration carries.
-    pub(super) fn force_size(&mut self, force: D, branch: Branch, state: &[D]) -> f64 {
+    /// Sum of the magnitudes of the forces (N) that `rates` adds up at `time`, whose rounding the acceleration carries.
+    pub(super) fn force_size(&mut self, piece: &Piece<D>, time: f64, branch: Branch, state: &[D]) -> f64 {
         let friction = self.friction(branch, state).value().abs();
         let damping = self.oscillator.damping().force(state[1]).value().abs();
-        force.value().abs() + damping + self.spring.force(state[0]).value().abs() + friction
+        // Next to a zero of a wave, or to a corner, the force is a small difference of large terms.
+        // An angle is rounded as well, to as many ulp as it has turns.
+        let of_wave = |wave: &ForceWave<D>| wave.amplitude.value().abs() * (1.0 + wave.angular.value() * time);
+        let force = piece.force(time).value().abs() + piece.waves.iter().map(of_wave).sum::<f64>();
+        let spring =
+            self.spring.force(state[0]).value().abs().max(self.spring.slope(state[0]) * state[0].value().abs());
+        force + damping + spring + friction
     }
 
     /// Writes the Jacobian of `rates` in the values at `state`, row by row, into `jacobian`. `speed` (m/s) is a typical

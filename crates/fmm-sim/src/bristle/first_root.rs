@@ -50,6 +50,17 @@ pub(super) fn next_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
     None
 }
 
+/// The first zero after one at 0 at which the polynomial has a slope of the sign of `rise`, or none if that is zero.
+pub(super) fn root_beyond(coefficients: [f64; STAGES + 1], rise: f64) -> Option<f64> {
+    // Bernstein coefficients of the polynomial over τ.
+    let mut quotient: [f64; STAGES] =
+        std::array::from_fn(|index| coefficients[index + 1] * STAGES as f64 / (index + 1) as f64);
+    if rise == 0.0 {
+        quotient[0] = 0.0;
+    }
+    first_root(quotient)
+}
+
 fn first_in<const N: usize>(coefficients: [f64; N], begin: f64, width: f64, depth: u32) -> Option<f64> {
     if coefficients[1..].iter().all(|coefficient| *coefficient > 0.0) {
         return None;
@@ -168,6 +179,18 @@ mod tests {
             assert_eq!(next_root(bernstein(|tau| -rises(tau))), Some(0.0), "power {power}");
             assert_eq!(next_root(bernstein(|tau| tau.powi(power))), None, "power {power}");
         }
+    }
+
+    /// A swing that has come back after a small part of the step is seen, as it is not by the rule for the speed.
+    #[test]
+    fn finds_a_zero_however_near_to_that_at_the_start() {
+        for part in [0.5, 1e-2, 1e-6, 1e-12] {
+            let found = root_beyond(bernstein(|tau| tau * (part - tau)), part).expect("two zeros");
+            assert!((found / part - 1.0).abs() < 1e-14 / part, "{part}: {found}");
+            assert_eq!(root_beyond(bernstein(|tau| tau * (part + tau)), part), None, "{part}");
+        }
+        assert_eq!(root_beyond(bernstein(|tau| tau * tau), 0.0), None);
+        assert!((root_beyond(bernstein(|tau| tau * tau * (0.25 - tau)), 0.0).expect("another") - 0.25).abs() < 1e-12);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use fmm_friction::BristleLaw;
 use fmm_model::Scalar;
 
-use crate::bristle::first_root::{end_slope, first_root, last_coefficient, next_root};
+use crate::bristle::first_root::{end_slope, first_root, last_coefficient, next_root, root_beyond};
 use crate::bristle::polynomial::ROUNDING;
 use crate::bristle::radau::STAGES;
 use crate::bristle::run::Run;
@@ -74,13 +74,14 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
     /// reserve may depend on the velocity in another way: its zeros cannot be sought on the polynomial.
     pub(super) fn first_guard(&mut self, at_zero: bool) -> Result<Option<(f64, Guard)>, NotSmooth> {
         let mut first: Option<(f64, Guard)> = None;
+        let velocity = self.step.begin[1].value();
         let mut look = |coefficients: [f64; STAGES + 1], guard| {
-            let begins_there = match guard {
-                Guard::Speed => at_zero,
-                Guard::SpringCorner(_) => coefficients[0] == 0.0,
-                Guard::Reserve(_) | Guard::Corner(_) => false,
+            let root = match guard {
+                Guard::Speed if at_zero => next_root(coefficients),
+                // A motion that has just passed the corner may come back at once.
+                Guard::SpringCorner(_) if coefficients[0] == 0.0 => root_beyond(coefficients, velocity),
+                _ => first_root(coefficients),
             };
-            let root = if begins_there { next_root(coefficients) } else { first_root(coefficients) };
             if let Some(tau) = root
                 && first.is_none_or(|(earliest, _)| tau < earliest)
             {

@@ -6,6 +6,7 @@ mod explicit;
 mod field;
 mod first_root;
 mod guards;
+mod hidden;
 mod lu;
 mod modes;
 mod pace;
@@ -54,7 +55,8 @@ pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
 ///
 /// The polynomial of a step gives the samples, the right-hand side at these the accelerations (good to 4e-10 of the
 /// largest at the default tolerance), and its Bernstein coefficients prove that no zero of u lies within the step,
-/// or locate it: a series ends there, another step is taken again to end there, by Newton's method on its length.
+/// or locate it: a series ends there, another step is taken again to end there, by Newton's method on its length. Next
+/// to a zero of u the law is looked at between the stages too, so that friction may rise over any part of the speed.
 ///
 /// A law with bristles has no stick: a contact that seems to hold creeps or vibrates on its bristles. At u = 0 all
 /// elements hold again ([`EventKind::Reversal`](crate::EventKind::Reversal)), and the direction comes from the load,

@@ -7,7 +7,7 @@ use crate::bristle::field::Branch;
 use crate::bristle::guards::Guard;
 use crate::bristle::run::Run;
 use crate::error::SimulationError;
-use crate::mechanics::{Curve, ForceWave, Piece};
+use crate::mechanics::{Curve, Piece};
 use crate::scenario::{Direction, Event, EventKind, Mode, State};
 
 impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
@@ -79,6 +79,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         self.branch = Branch { direction, regime: Regime::ALL_HOLD };
         self.field.release();
         self.field.begin(self.branch, &self.step.begin);
+        self.field.spring.begin(self.step.begin[0], self.heading());
         self.recorder.trajectory.redirect(self.time, direction);
     }
 
@@ -111,8 +112,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         let branch = Branch { regime: Regime::ALL_HOLD, ..self.branch };
         self.field.rates(force, branch, begin, &mut self.after);
         let mass = self.field.oscillator.mass().value();
-        let amplitude = |wave: &ForceWave<D>| wave.amplitude.value().abs();
-        let size = self.field.force_size(force, branch, begin) + piece.waves.iter().map(amplitude).sum::<f64>();
+        let size = self.field.force_size(piece, self.time, branch, begin);
         let load = self.after[1].value() * mass;
         let rounding = 4.0 * f64::EPSILON * size;
         // A motion on the bristles below the digits of the position does not count, unless the pull exceeds what they

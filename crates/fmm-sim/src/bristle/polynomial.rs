@@ -52,6 +52,8 @@ pub(super) struct StepPolynomial<D> {
     /// Rest of the scale of the half cycle before.
     carried: Vec<f64>,
     state: Vec<D>,
+    /// Angular frequency (rad/s) of small vibrations on a spring that is not linear where the step begins, else 0.
+    pub(super) local: f64,
     /// Taylor coefficients of each component in powers of τ, for a step of the series.
     pub(super) series: Vec<Series<D>>,
     /// True if the polynomial is that of the series.
@@ -70,6 +72,7 @@ impl<D: Scalar> StepPolynomial<D> {
             moved: vec![0.0; size],
             carried: vec![0.0; size],
             state: begin.clone(),
+            local: 0.0,
             series: vec![[zero; ORDER + 1]; size],
             is_series: false,
             begin,
@@ -164,10 +167,11 @@ impl<D: Scalar> StepPolynomial<D> {
 
     /// Bernstein coefficients of `sign` times the excess of a component over `level`.
     pub(super) fn bernstein_of(&self, component: usize, level: f64, sign: f64) -> [f64; STAGES + 1] {
-        let begin = self.begin[component].value();
-        let mut nodal = [(begin - level) * sign; STAGES + 1];
+        // Next to the level the increments have digits that the sum with the beginning would lose.
+        let excess = self.begin[component].value() - level;
+        let mut nodal = [excess * sign; STAGES + 1];
         for (nodal, increment) in nodal[1..].iter_mut().zip(&self.increments[component]) {
-            *nodal = (begin + increment.value() - level) * sign;
+            *nodal = (excess + increment.value()) * sign;
         }
         coefficients(&nodal)
     }
@@ -180,8 +184,17 @@ impl<D: Scalar> StepPolynomial<D> {
     /// Compares errors with how far each component has moved in this swing, this step included, or with what rounding
     /// makes of it; `rounding` is that of the velocity (m/s) in units of the tolerance.
     pub(super) fn rescale(&mut self, span: Span, rounding: f64) {
+        // The rounding of the velocity is that of all that follows it.
+        let velocity = self.moved(1);
+        let noise = if velocity > 0.0 { (rounding / velocity).max(1.0) } else { 1.0 };
         for component in 0..self.size {
-            self.scale[component] = self.moved(component).max(self.least_scale(component, span.tolerance, rounding));
+            let moved = if component == 1 { velocity } else { noise * self.moved(component) };
+            self.scale[component] = moved.max(self.least_scale(component, span.tolerance, rounding));
+        }
+        if self.local > 0.0 {
+            // On a stop the way since the last reversal is no measure of what an error of the position does.
+            let floor = ROUNDING / span.tolerance * self.begin[0].value().abs();
+            self.scale[0] = self.scale[0].min(self.scale[1] / self.local).max(floor);
         }
     }
 

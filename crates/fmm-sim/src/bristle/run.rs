@@ -46,6 +46,8 @@ pub(super) struct Run<'a, D, L: ?Sized> {
     /// Room for two states or rates.
     pub(super) before: Vec<D>,
     pub(super) after: Vec<D>,
+    /// Room for the rates (1/s) at which the states return.
+    pub(super) relaxations: Vec<f64>,
 }
 
 impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
@@ -63,6 +65,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
             tolerance,
             stiffness: 0.0,
             steps: 0,
+            relaxations: vec![0.0; begin.len() - 2],
             before: begin.clone(),
             after: begin,
             field,
@@ -75,6 +78,9 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         let end = self.recorder.sampling.end();
         let mut piece = drive.piece(0);
         let relative = self.step.begin[1].value() - self.field.belt.value();
+        // What drives a contact at rest is the force of the spring where it is.
+        self.field.spring.begin(self.step.begin[0], self.heading());
+        self.stiffness = self.stiffness_here();
         let direction = if relative == 0.0 { self.departure(&piece) } else { Some(Direction::of(relative)) };
         let grazing = direction.is_none() && self.rest_has_derivatives(&piece);
         self.go(direction);
@@ -141,9 +147,14 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         self.collocation.forget();
         self.field.release();
         self.field.begin(self.branch, &self.step.begin);
-        let leaving = D::from(self.branch.direction.sign());
-        self.field.spring.begin(State { position: self.step.begin[0], velocity: leaving });
+        self.field.spring.begin(self.step.begin[0], self.heading());
         self.pace.turn();
+    }
+
+    /// The direction in which the mass moves, or leaves rest.
+    pub(super) fn heading(&self) -> Direction {
+        let velocity = self.step.begin[1].value();
+        if velocity == 0.0 { self.branch.direction } else { Direction::of(velocity) }
     }
 
     /// Goes on by one step, to `limit` (s) at most, or to an event before it.
@@ -167,6 +178,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
 
     /// Goes on by one step of order 8 or an implicit one, to `limit` (s) at most, or to an event before it.
     fn advance_by_stages(&mut self, piece: &Piece<D>, limit: f64) -> Result<(), SimulationError> {
+        self.step.local = self.field.local_angular(self.step.begin[0]);
         let at_zero = self.step.begin[1].value() == self.field.belt.value();
         let room = limit - self.time;
         let mut length = self.first_length().min(room);
@@ -233,6 +245,10 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
             if let Some(Approach { guard, nearest }) = approach {
                 match self.landing(guard, nearest) {
                     Landing::There { correction, grazing } => {
+                        if let Some(shorter) = self.before_hidden(piece, length) {
+                            (length, approach) = (shorter, None);
+                            continue;
+                        }
                         self.finish(length, correction, limit, piece)?;
                         return self.arrive(guard, piece, grazing);
                     }
@@ -250,6 +266,10 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
                         }
                     }
                 }
+            }
+            if let Some(shorter) = self.before_hidden(piece, length) {
+                length = shorter;
+                continue;
             }
             let was_implicit = self.pace.implicit;
             let to_turn = length * self.step.to_turn(self.field.belt.value());
@@ -285,6 +305,13 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         }
     }
 
+    /// The length with which to try this step of `length` again, if it has passed a part of the law.
+    fn before_hidden(&mut self, piece: &Piece<D>, length: f64) -> Option<f64> {
+        let part = self.hidden(piece, length)?;
+        self.retry(length);
+        Some(length * part)
+    }
+
     /// Angular frequency (rad/s) of the machine, or of the fastest wave.
     pub(super) fn slow(&self, piece: &Piece<D>) -> f64 {
         piece.frequencies().fold(self.angular(), f64::max)
@@ -307,6 +334,12 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         if let Some(proposed) = self.pace.proposed() {
             return proposed;
         }
+        self.stiffness = self.stiffness_here();
+        self.pace.first(self.stiffness)
+    }
+
+    /// Stiffness of spring and bristles together, per mass (1/s²).
+    fn stiffness_here(&mut self) -> f64 {
         let size = self.field.size();
         let mut jacobian = vec![0.0; size * size];
         let begin = &self.step.begin;
@@ -315,9 +348,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         let speed = begin[1].value().abs().max(angular * begin[0].value().abs()).max(bristles);
         self.field.jacobian(self.branch, begin, speed, &mut jacobian);
         let bristles = (2..size).map(|state| (jacobian[size + state] * jacobian[state * size + 1]).abs());
-        let stiffness = jacobian[size].abs() + bristles.sum::<f64>();
-        self.stiffness = stiffness;
-        self.pace.first(stiffness)
+        jacobian[size].abs() + bristles.sum::<f64>()
     }
 
     /// Writes the samples within the step of `length` and goes to its end, or a part `correction` of it further.

@@ -106,7 +106,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
             return Ok(false);
         }
         self.count_step()?;
-        let forces = self.field.force_size(piece.force(self.time), self.branch, &self.step.begin);
+        let forces = self.field.force_size(piece, self.time, self.branch, &self.step.begin);
         let mass = self.field.oscillator.mass().value();
         let tolerance = self.tolerance;
         let rounding = |length: f64| ROUNDING / tolerance * forces / mass * length;
@@ -137,8 +137,16 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
                 return self.arrive(guard, piece, false).map(|()| true);
             }
             self.step.take_series(tau);
-            self.finish(length * tau, 0.0, limit, piece)?;
-            return self.arrive(guard, piece, grazing).map(|()| true);
+            length *= tau;
+            let Some(part) = self.hidden(piece, length) else {
+                self.finish(length, 0.0, limit, piece)?;
+                return self.arrive(guard, piece, grazing).map(|()| true);
+            };
+            self.step.take_series(part);
+            length *= part;
+        } else if let Some(part) = self.hidden(piece, length) {
+            self.step.take_series(part);
+            length *= part;
         }
         let reach = self.step.reach_of_stages(tolerance).min((room - length) / length);
         self.pace.expand(rate * length / STABLE, reach, length);

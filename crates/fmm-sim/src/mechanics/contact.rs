@@ -94,7 +94,10 @@ pub(crate) fn rounding<D: Scalar, E: Scalar>(
     time: D,
     state: State<D>,
 ) -> f64 {
-    let spring = 2.0 * oscillator.restoring_force(state.position).value().abs();
+    let position = state.position;
+    // Next to a corner of the spring the force is a small difference of large terms.
+    let terms = oscillator.restoring().slope(oscillator.stiffness(), position).0.value() * position.value();
+    let spring = 2.0 * oscillator.restoring_force(position).value().abs().max(terms.abs());
     let (mut force, mut rate) = (load.constant.value().abs() + spring, load.slope.value().abs());
     for wave in &load.waves {
         let amplitude = wave.cosine.value().hypot(wave.sine.value());

@@ -12,4 +12,4 @@ pub(crate) use crossing::{crossing, first_crossing};
 pub(crate) use curve::{Curve, ROUNDING, SEARCH_BUDGET, Wave, first_zero};
 pub(crate) use decay::Decay;
 pub(crate) use forcing::{ForceWave, Forcing, Piece};
-pub(crate) use spring::{Range, Spring, WEAK_SPRING};
+pub(crate) use spring::{Corner, Range, Spring, WEAK_SPRING};

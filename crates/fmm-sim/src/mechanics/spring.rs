@@ -2,7 +2,7 @@
 
 use fmm_model::{Oscillator, Restoring, Scalar};
 
-use crate::scenario::State;
+use crate::scenario::Direction;
 
 /// ω₀ t over the sampled time t below which the spring does not shape the motion (1). A closed form has then lost four
 /// digits.
@@ -43,14 +43,15 @@ impl<'a, D: Scalar> Spring<'a, D> {
         Self { oscillator, range: Range::Between }
     }
 
-    /// Takes the range in which a motion goes on from `state`.
-    pub(crate) fn begin(&mut self, state: State<D>) {
+    /// Takes the range in which a motion goes on from `position` (m) in this `direction`.
+    pub(crate) fn begin(&mut self, position: D, direction: Direction) {
         let Some(corner) = self.oscillator.restoring().corner() else { return };
-        let (position, velocity) = (state.position.value(), state.velocity.value());
-        let outwards = velocity * position > 0.0;
+        let position = position.value();
         let distance = position.abs() - corner.value();
-        let is_beyond = distance > 0.0 || distance == 0.0 && outwards;
-        self.range = if is_beyond { Range::Beyond(position > 0.0) } else { Range::Between };
+        let positive = if position == 0.0 { direction == Direction::Positive } else { position > 0.0 };
+        let is_outwards = positive == (direction == Direction::Positive);
+        let is_beyond = distance > 0.0 || distance == 0.0 && is_outwards;
+        self.range = if is_beyond { Range::Beyond(positive) } else { Range::Between };
     }
 
     /// The restoring force (N) at `position` (m), continued from this range.
@@ -66,6 +67,16 @@ impl<'a, D: Scalar> Spring<'a, D> {
         }
     }
 
+    /// The slope of the force (N/m) at `position` (m), in this range.
+    pub(crate) fn slope(&self, position: D) -> f64 {
+        let slope = match (self.oscillator.restoring(), self.range) {
+            (Restoring::Bilinear { inner, .. }, Range::Between) => self.oscillator.stiffness() * inner,
+            (Restoring::Bilinear { outer, .. }, Range::Beyond(_)) => self.oscillator.stiffness() * outer,
+            (restoring, _) => restoring.slope(self.oscillator.stiffness(), position).0,
+        };
+        slope.value()
+    }
+
     /// The corners at which this range ends.
     pub(crate) fn ends(&self) -> impl Iterator<Item = Corner> + use<D> {
         let distance = self.oscillator.restoring().corner().map(Scalar::value);
@@ -78,9 +89,10 @@ impl<'a, D: Scalar> Spring<'a, D> {
         sides.into_iter().flatten().filter_map(corner)
     }
 
-    /// The corner beyond which `position` (m) lies.
-    pub(crate) fn left_at(&self, position: f64) -> Option<Corner> {
-        self.ends().find(|corner| (position - corner.position) * corner.before < 0.0)
+    /// The corner at which a motion of this `direction` leaves the range.
+    pub(crate) fn ahead(&self, direction: Direction) -> Option<Corner> {
+        self.oscillator.restoring().corner()?;
+        self.ends().find(|corner| corner.before == -direction.sign())
     }
 
     /// The corner behind which the machine is in the range `next`.

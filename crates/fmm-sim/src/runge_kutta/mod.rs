@@ -1,6 +1,7 @@
 //! The Runge-Kutta engine: any law of the sliding speed, any machine, any force, to a tolerance.
 
 mod by_speed;
+mod corner;
 mod field;
 mod slide;
 mod step;

@@ -1,12 +1,12 @@
 //! One stretch of sliding, step by step.
 
 use fmm_friction::SlidingLaw;
-use fmm_model::Scalar;
+use fmm_model::{Restoring, Scalar};
 
 use crate::automaton::{Ended, Ending, Phase, Slide};
 use crate::dormand_prince::{COEFFICIENTS, Within};
 use crate::error::SimulationError;
-use crate::mechanics::{Forcing, Range, WEAK_SPRING, load};
+use crate::mechanics::{Forcing, WEAK_SPRING, load};
 use crate::runge_kutta::by_speed::{BySpeed, Refiner};
 use crate::runge_kutta::field::{Field, Guard, Progress, Side};
 use crate::runge_kutta::step::{STABLE, Step, first_zero_within};
@@ -17,7 +17,7 @@ use crate::trajectory::Recorder;
 const STEP_BUDGET: usize = 1_000_000;
 
 /// Attempts at landing on an event; Newton's method needs two or three.
-const LANDINGS: usize = 12;
+pub(super) const LANDINGS: usize = 12;
 
 /// Least dip of the acceleration of a step below zero, in units of its error in the velocity over its length.
 const DIP: f64 = 10.0;
@@ -27,7 +27,7 @@ const NOT_LANDED: f64 = 256.0;
 
 /// Follows stretches of sliding for the Runge-Kutta engine.
 pub(super) struct Integrator<'a, D, L: ?Sized> {
-    field: Field<'a, D, L>,
+    pub(super) field: Field<'a, D, L>,
     tolerance: f64,
     /// ω₀ of small vibrations, or a frequency of little rotation within the sampled time if that is greater (rad/s).
     angular: f64,
@@ -60,13 +60,27 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         }
     }
 
-    /// Amplitudes (m, m/s) that errors are relative to.
-    fn scale(&self, state: State<D>, acceleration: D) -> State<f64> {
+    /// The angular frequency (rad/s) of small vibrations about `position`, or that of the machine if it is greater.
+    fn angular_at(&self, position: D) -> f64 {
+        match self.field.oscillator.restoring() {
+            Restoring::Linear => self.angular,
+            // Where a spring pushes away there is none.
+            _ => self.angular.max((self.field.spring.slope(position) * self.field.per_mass.value()).sqrt()),
+        }
+    }
+
+    /// Amplitudes (m, m/s) that errors are relative to, where the machine vibrates with `angular` (rad/s).
+    fn scale(&self, state: State<D>, acceleration: D, angular: f64) -> State<f64> {
         let velocity = state.velocity.value().abs()
             + self.angular * (state.position.value().abs() + self.held)
-            + acceleration.value().abs() / self.angular;
+            + acceleration.value().abs() / angular;
         let velocity = velocity.max(f64::MIN_POSITIVE);
-        State { position: velocity / self.angular, velocity }
+        State { position: velocity / angular, velocity }
+    }
+
+    /// Amplitudes at the end of `step`.
+    fn last_scale(&self, step: &Step<D>) -> State<f64> {
+        self.scale(step.end, step.last_acceleration(), self.angular_at(step.end.position))
     }
 
     /// The value at the end of `step` of `guard`, positive before the event.
@@ -123,7 +137,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
                 }
                 if !crossed {
                     // A dip within the error of the step is none.
-                    powers[0] += DIP * self.tolerance * self.scale(step.end, step.last_acceleration()).velocity;
+                    powers[0] += DIP * self.tolerance * self.last_scale(step).velocity;
                 }
             } else {
                 powers[0] = self.field.spare_speed(phase, at.side, at.state.velocity, guard).value();
@@ -141,7 +155,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
     }
 
     #[inline]
-    fn take(&self, phase: &Phase<D>, at: &Progress<D>, length: f64) -> Step<D> {
+    pub(super) fn take(&self, phase: &Phase<D>, at: &Progress<D>, length: f64) -> Step<D> {
         Step::take(at.state, at.acceleration, length, |elapsed, state| {
             self.field.acceleration(phase, at.side, at.time + elapsed, state)
         })
@@ -153,7 +167,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
 
     /// Greatest distance of a step's end from an event (s) that a straight line may cover: the curvature adds less than
     /// rounding.
-    fn close(&self) -> f64 {
+    pub(super) fn close(&self) -> f64 {
         1e-9 / self.angular
     }
 
@@ -180,41 +194,9 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
         step
     }
 
-    /// The step from `at` that ends at the `corner` (m) of the spring beyond which `step` has gone. `None` if none is
-    /// found.
-    ///
-    /// The force is continuous there: nothing shifts with the inputs, but no polynomial follows a motion across it.
-    fn to_corner(&self, phase: &Phase<D>, at: &Progress<D>, step: &Step<D>, corner: f64) -> Option<Step<D>> {
-        let [from, to] = [at.state, step.end].map(|state| state.position.value());
-        let mut length = step.length * (corner - from) / (to - from);
-        for _ in 0..LANDINGS {
-            let landed = self.take(phase, at, length);
-            if self.is_near(corner, landed.end) {
-                return Some(landed);
-            }
-            length -= (landed.end.position.value() - corner) / landed.end.velocity.value();
-            if !(length > 0.0 && length < step.length) {
-                break;
-            }
-        }
-        None
-    }
-
-    /// Goes on behind a corner of the spring.
-    fn pass(&mut self, phase: &Phase<D>, at: &mut Progress<D>, range: Range) {
-        self.field.spring.range = range;
-        // An acceleration of the range before would be an error of the first stage.
-        at.acceleration = self.field.acceleration(phase, at.side, at.time, at.state);
-    }
-
-    /// True if a straight line reaches from `state` to `corner` (m).
-    fn is_near(&self, corner: f64, state: State<D>) -> bool {
-        (state.position.value() - corner).abs() <= state.velocity.value().abs() * self.close()
-    }
-
     /// A size of the rate of the guard, as long as it does not turn there.
     fn rate_scale(&self, step: &Step<D>, guard: Guard) -> f64 {
-        let acceleration = self.scale(step.end, step.last_acceleration()).velocity * self.angular;
+        let acceleration = self.last_scale(step).velocity * self.angular;
         if guard == Guard::Steady { acceleration * self.angular } else { acceleration }
     }
 
@@ -328,7 +310,7 @@ fn factor(error: f64) -> f64 {
 
 impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
     fn slide(&mut self, phase: &Phase<D>, recorder: &mut Recorder<D>) -> Result<Ended<D>, SimulationError> {
-        self.field.spring.begin(phase.state);
+        self.field.spring.begin(phase.state.position, phase.direction);
         let mut at = self.depart(phase, phase.time, phase.state, self.field.first_side(phase));
         let longest = self.longest(phase);
         while at.time < phase.limit {
@@ -344,27 +326,25 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 .budget
                 .checked_sub(1)
                 .ok_or_else(|| SimulationError::step_budget(STEP_BUDGET, recorder.sampling.end()))?;
-            let mut step = self.take(phase, &at, length);
-            let left = self.field.spring.left_at(step.end.position.value());
-            if let Some(corner) = left {
-                if self.is_near(corner.position, at.state) {
-                    self.pass(phase, &mut at, corner.next);
-                    continue;
-                }
-                let Some(landed) = self.to_corner(phase, &at, &step, corner.position) else {
-                    self.shorten(&at, 0.5 * length)?;
-                    continue;
-                };
-                (length, step) = (landed.length, landed);
+            let corner = self.field.spring.ahead(phase.direction);
+            if let Some(corner) = corner.filter(|corner| self.is_there(*corner, at.state)) {
+                self.pass(phase, &mut at, corner);
+                continue;
             }
-            let mut scale = self.scale(at.state, at.acceleration);
+            let mut step = self.take(phase, &at, length);
+            let mut passed = Self::passed(corner, step.end);
+            if let Some(corner) = passed {
+                step = self.to_corner(phase, &at, &step, corner);
+                length = step.length;
+            }
+            let angular = self.angular_at(at.state.position).max(self.angular_at(step.end.position));
+            let mut scale = self.scale(at.state, at.acceleration, angular);
             if self.field.is_driven {
                 // A motion may begin from nothing; then it is as large as the force makes it.
                 let force = |time| phase.piece.force(time).value();
-                let rise =
-                    (force(at.time + length) - force(at.time)).abs() * self.field.per_mass.value() / self.angular;
+                let rise = (force(at.time + length) - force(at.time)).abs() * self.field.per_mass.value() / angular;
                 scale.velocity += rise;
-                scale.position += rise / self.angular;
+                scale.position += rise / angular;
             }
             let mut error = step.error(scale) / self.tolerance;
             // In a creeping motion, values stay good beyond the limit of stability for long, but derivatives grow.
@@ -379,22 +359,28 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 && let Some((guard, theta)) = self.reached(phase, &at, &mut step)
             {
                 // What lies behind the event does not belong to the stretch; the step that ends there must be good.
-                let mut step = self.land(phase, &at, guard, theta * length, length);
-                error = step.error(scale) / self.tolerance;
-                if error <= 1.0 && self.has_landed(phase, &at, &step, guard) {
+                let mut landed = self.land(phase, &at, guard, theta * length, length);
+                error = landed.error(scale) / self.tolerance;
+                passed = Self::passed(corner, landed.end);
+                if let Some(corner) = passed {
+                    // Nor is the event that of the spring behind its corner.
+                    step = self.to_corner(phase, &at, &landed, corner);
+                    (length, error) = (step.length, step.error(scale) / self.tolerance);
+                } else if error <= 1.0 && self.has_landed(phase, &at, &landed, guard) {
                     self.adapt(length, 1.0, error);
-                    let by_speed = self.refiner.refine(&self.field, phase, &at, &mut step);
-                    let ended = self.ended(phase, &at, &step, guard);
+                    let by_speed = self.refiner.refine(&self.field, phase, &at, &mut landed);
+                    let ended = self.ended(phase, &at, &landed, guard);
                     let end = ended.time.value();
-                    self.record(phase, &at, &mut step, by_speed.as_ref(), (end, end), recorder)?;
+                    self.record(phase, &at, &mut landed, by_speed.as_ref(), (end, end), recorder)?;
                     if guard != Guard::Escape {
                         return Ok(ended);
                     }
                     at = self.depart(phase, ended.time, ended.state, Side::Above);
                     continue;
+                } else {
+                    // A step too long for the machine may see an event that is none.
+                    (length, error) = (landed.length, error.max(NOT_LANDED));
                 }
-                // A step too long for the machine may see an event that is none.
-                (length, error) = (step.length, error.max(NOT_LANDED));
             }
             if !(error <= 1.0) {
                 self.shorten(&at, length * if error.is_finite() { factor(error).clamp(0.1, 0.9) } else { 0.1 })?;
@@ -408,8 +394,8 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
             self.record(phase, &at, &mut step, by_speed.as_ref(), (next, stop), recorder)?;
             at = Progress { time: next, state: step.end, acceleration: step.last_acceleration(), side: at.side };
             SimulationError::require_restoring(self.field.oscillator, at.time, at.state.position)?;
-            if let Some(corner) = left {
-                self.pass(phase, &mut at, corner.next);
+            if let Some(corner) = passed {
+                self.pass(phase, &mut at, corner);
             }
         }
         let first = recorder.written;
