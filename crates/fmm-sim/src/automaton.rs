@@ -4,7 +4,7 @@ use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::error::SimulationError;
 use crate::mechanics::{
-    Curve, Forcing, Levels, Piece, SEARCH_BUDGET, crossing, first_zero, holds_for_good, load, rounding,
+    Curve, Forcing, Levels, Piece, SEARCH_BUDGET, SteadyReserve, crossing, first_zero, holds_for_good, load, rounding,
 };
 use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
 use crate::trajectory::{Power, Recorder};
@@ -259,6 +259,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 ending @ (Ending::RelativeRest | Ending::SteadySpeed)
                     if ending == Ending::RelativeRest || self.has_no_speed(mode, state) =>
                 {
+                    recorder.catch(self.oscillator.mass(), state.velocity - self.belt, self.belt);
                     state.velocity = self.belt;
                     let (next, load) = self.mode(&piece, time, state);
                     (if next == Mode::Stick { EventKind::Stop } else { EventKind::Reversal }, next, load)
@@ -351,10 +352,6 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let State { position, velocity } = phase.state;
         let load = self.load(phase.piece, phase.time, position, velocity);
         let is_bent = steady.is_some() && self.has_bent_spring();
-        if is_bent && !phase.piece.waves.is_empty() {
-            let what = "a constant speed on a spring that is not linear under a force that swings";
-            return Err(SimulationError::NotSupported { engine: "runge_kutta", what });
-        }
         // Friction over the normal load lies between −below and above along the positive direction.
         let (above, below) = match steady {
             None => (self.levels.breakaway(), self.levels.breakaway()),
@@ -383,12 +380,15 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             let bound = if slack { bound + excess } else { bound };
             if is_bent {
                 let last = leaving.map_or(span, |(elapsed, ..)| elapsed);
-                let reserve = |elapsed: f64| {
-                    let passed = self.load_after(phase, elapsed).now().value();
-                    bound.value() + bound_slope.value() * elapsed - sign * passed
+                let reserve = SteadyReserve {
+                    oscillator: self.oscillator,
+                    piece: phase.piece,
+                    time: begin,
+                    state: State { position: position.value(), velocity: velocity.value() },
+                    level: (bound.value(), bound_slope.value()),
+                    sign,
                 };
-                let usual = (normal_load * (above + below)).value().abs() / plain.slope.abs();
-                if let Some(elapsed) = fallen(reserve, usual, last) {
+                if let Some(elapsed) = reserve.first_zero(last, &mut self.budget)? {
                     leaving = Some((elapsed, (bound, bound_slope), sign));
                 }
                 continue;
@@ -448,30 +448,6 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             Some(along) => (Ending::SteadySpeed, Mode::Losing(along)),
         };
         Ok((Ended { ending, time, state, grazing }, next))
-    }
-}
-
-/// Time at which `reserve`, positive at first, falls to zero within `span`; searched in steps of about a quarter of the
-/// `usual` time.
-fn fallen(reserve: impl Fn(f64) -> f64, usual: f64, span: f64) -> Option<f64> {
-    const STEPS: (f64, f64) = (64.0, 4096.0);
-    // Where the levels are equal, the least time is left, and a part of it is none.
-    let step = (0.25 * usual).clamp(span / STEPS.1, span / STEPS.0).max(f64::MIN_POSITIVE);
-    // It may begin below zero by rounding.
-    let mut after = step;
-    while after < span && reserve(after) >= 0.0 {
-        after += step;
-    }
-    let (mut before, mut after) = ((after - step).max(0.0), after.min(span));
-    if reserve(after) >= 0.0 {
-        return None;
-    }
-    loop {
-        let middle = 0.5 * (before + after);
-        if middle <= before || middle >= after {
-            return Some(after);
-        }
-        if reserve(middle) > 0.0 { before = middle } else { after = middle }
     }
 }
 

@@ -6,6 +6,7 @@ mod curve;
 mod decay;
 mod forcing;
 mod spring;
+mod steady;
 
 pub(crate) use contact::{Branches, Levels, Sliding, holds_for_good, load, rounding};
 pub(crate) use crossing::{crossing, first_crossing};
@@ -13,3 +14,4 @@ pub(crate) use curve::{Curve, ROUNDING, SEARCH_BUDGET, Wave, first_zero};
 pub(crate) use decay::Decay;
 pub(crate) use forcing::{ForceWave, Forcing, Piece};
 pub(crate) use spring::{Corner, Range, Spring, WEAK_SPRING};
+pub(crate) use steady::SteadyReserve;

@@ -238,6 +238,13 @@ impl<'a, D: Scalar> Recorder<'a, D> {
         }
     }
 
+    /// Adds the work of a contact that takes its `relative` velocity (m/s) from a body of this `mass` (kg) at once,
+    /// beside a counterface of velocity `belt` (m/s): the impulse is that of friction.
+    pub(crate) fn catch(&mut self, mass: D, relative: D, belt: D) {
+        self.work.friction += mass * relative * relative * 0.5;
+        self.work.external -= mass * relative * belt;
+    }
+
     /// Adds the work done from `begin` to `end`, of which the samples at or after `begin` and before `end` get their
     /// part; `power` gives the power at a time, which must be smooth and vary little within `scale` (s).
     pub(crate) fn work(
