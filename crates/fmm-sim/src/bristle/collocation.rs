@@ -22,6 +22,9 @@ const MOST_DERIVATIVE_ITERATIONS: usize = 60;
 /// Remaining error of Newton's method, in units of the tolerance.
 const LEFT_OVER: f64 = 0.01;
 
+/// Correction above which the increments are not yet a measure of the motion (1): a prediction may be off by any factor.
+const FAR: f64 = 1e-2;
+
 /// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, 10 to
 /// 13 (1). Measured: the number of iterations is least for 5 to 6.
 const LEAST_STIFF: f64 = 6.0;
@@ -102,8 +105,8 @@ impl<D: Scalar> Collocation<D> {
         loop {
             self.evaluate(motion, field, branch, span, iterations == 0);
             self.correct(motion, span, true);
-            if iterations < 1 {
-                // The scale of the errors hardly changes any more.
+            if before > FAR {
+                // After that the scale of the errors hardly changes any more.
                 motion.rescale(span, rounding);
             }
             let correction = self.correction(motion, D::value);

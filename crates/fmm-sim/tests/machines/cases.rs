@@ -109,6 +109,19 @@ fn the_tolerance_governs_a_narrow_stribeck_curve() {
     }
 }
 
+/// A long step after very short ones, whose polynomial predicts nothing so far ahead: as good as any other.
+#[test]
+fn a_bad_prediction_does_not_spoil_a_step() {
+    let machine = Oscillator::new(6.613_641_991_945_747, 180.105_250_648_551).unwrap();
+    let law = Dahl::new(1.623_468_701_990_882_6e-7, 0.215_822_633_048_437_93, 0.637_798_192_887_835_6).unwrap();
+    let scenario = Scenario::new(machine, law, 3.096_188_898_224_162_8).unwrap();
+    let scenario = scenario.starting_at(-0.002_790_904_625_833_019, 0.0).unwrap();
+    let scenario = scenario.driven_by(Excitation::constant(0.190_535_259_230_396_46).unwrap());
+    let motion = Bristle::default().run(&scenario, &Sampling::uniform(0.0925, 51).unwrap().with_work()).unwrap();
+    let imbalance = motion.energy_imbalance(&scenario).unwrap();
+    assert!(imbalance < 1e-11, "{imbalance:e}");
+}
+
 /// A contact that is caught at the speed of its dead zone loses that energy to friction, on a belt as well.
 #[test]
 fn a_dead_zone_keeps_the_balance() {
