@@ -8,6 +8,10 @@ pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
     /// Of combinations of columns of unit length, those below this square are rounding.
     const ROUNDING: f64 = 1e-10;
     let order = columns.len();
+    // An empty matrix has no eigenvalues to ask for.
+    if order == 0 {
+        return Vec::new();
+    }
     let product = |i: usize, j: usize| -> f64 { columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum() };
     let length = |i: usize| Some(product(i, i).sqrt().recip()).filter(|scale| scale.is_finite()).unwrap_or(0.0);
     let scales: Vec<f64> = (0..order).map(length).collect();
@@ -24,6 +28,9 @@ pub(crate) fn root_of_covariance(elements: &[f64], order: usize) -> Vec<f64> {
         let scale = deviations[i] * deviations[j];
         if scale > 0.0 { elements[i * order + j] / scale } else { 0.0 }
     };
+    if order == 0 {
+        return Vec::new();
+    }
     let eigen = DMatrix::from_fn(order, order, correlation).symmetric_eigen();
     let root = eigen.eigenvectors * DMatrix::from_diagonal(&eigen.eigenvalues.map(|square| square.max(0.0).sqrt()));
     (0..order * order).map(|at| root[(at / order, at % order)] * deviations[at / order]).collect()
@@ -62,6 +69,11 @@ mod tests {
     use super::*;
 
     /// Three columns in a plane: what they take of a direction is its part in the plane.
+    #[test]
+    fn no_columns_have_no_inverse() {
+        assert!(inverse_of_products(&[]).is_empty() && root_of_covariance(&[], 0).is_empty());
+    }
+
     #[test]
     fn columns_that_are_alike_take_no_more_than_one() {
         let columns = vec![vec![1.0, 0.0, 0.0], vec![1e6, 1e6, 0.0], vec![1e6, 1e6 + 1e-3, 0.0]];

@@ -299,7 +299,9 @@ impl<'a> Inquiry<'a> {
             Some((place, self.fit(&candidates[place], experiments, begin, options, end).ok()?))
         };
         for (place, found) in on_all_threads(missed, fit).into_iter().flatten() {
-            if found.fit().sum_of_squares() < identifications[place].fit().sum_of_squares() {
+            // A fit that determines nothing has not begun.
+            let is_lower = found.fit().sum_of_squares() < identifications[place].fit().sum_of_squares();
+            if is_lower && found.fit().rank() > 0 {
                 identifications[place] = found;
             }
         }
