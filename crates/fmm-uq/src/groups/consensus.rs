@@ -1,7 +1,7 @@
 //! Consensus of results that are known differently well and may differ by more than that.
 
 use fmm_model::{Estimated, Interval, coverage_factor};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
 use crate::error::UncertaintyError;
 
@@ -268,6 +268,34 @@ impl Consensus {
             contributions.remove(index);
         }
         Self::of(&others, self.effects)?.with_shared(&shared)
+    }
+
+    /// Probability that one of the results lies as far from the consensus of the others as result `index` does, if all
+    /// belonged together (1). A small one marks a result to be looked at, not one to be left out.
+    ///
+    /// ```text
+    /// t = (x_i − μ̂₋ᵢ)/√(u_i² + τ₋ᵢ² + u(μ̂₋ᵢ)²),     p P(|t(p − 2)| > |t|)     for p results (Bonferroni)
+    /// ```
+    ///
+    /// ```
+    /// use fmm_model::Estimated;
+    /// use fmm_uq::{Consensus, RandomEffects};
+    ///
+    /// let runs = [10.1, 10.2, 10.0, 10.1, 9.9, 11.1].map(|mu| Estimated::new(mu, 0.05));
+    /// let found = Consensus::of(&runs, RandomEffects::MandelPaule)?;
+    /// assert!(found.outlier_p_value(5)? < 0.02 && found.outlier_p_value(0)? > 0.5);
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`without`](Self::without), so that there must be three results.
+    pub fn outlier_p_value(&self, index: usize) -> Result<f64, UncertaintyError> {
+        let others = self.without(index)?;
+        let Estimated { value, uncertainty } = self.results[index];
+        let spread = uncertainty.hypot(others.between()).hypot(others.uncertainty);
+        let distance = (value - others.mean).abs() / spread;
+        let tail = StudentsT::new(0.0, 1.0, others.freedom()).map_or(0.5, |distribution| distribution.sf(distance));
+        Ok((2.0 * tail * self.results.len() as f64).min(1.0))
     }
 
     /// Share of the weights that each result has (1), in their order.

@@ -32,7 +32,9 @@ struct Row<'a> {
     sensitivity: f64,
     sensitivity_unit: String,
     contribution: f64,
-    share: f64,
+    /// None for a correlated input, whose share may be negative.
+    share: Option<f64>,
+    share_with_correlations: f64,
 }
 
 #[derive(Serialize)]
@@ -48,7 +50,7 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 impl<'a> Row<'a> {
-    fn new(budget: &Budget, row: Contribution<'a>) -> Self {
+    fn new(budget: &Budget, row: Contribution<'a>, is_correlated: bool) -> Self {
         let input = row.input;
         Self {
             quantity: input.name(),
@@ -62,7 +64,8 @@ impl<'a> Row<'a> {
             sensitivity: row.sensitivity,
             sensitivity_unit: budget.unit_of_sensitivity(input.unit()),
             contribution: row.uncertainty,
-            share: row.share,
+            share: (!is_correlated).then_some(row.share.clamp(0.0, 1.0)),
+            share_with_correlations: row.share,
         }
     }
 }
@@ -74,13 +77,18 @@ impl Serialize for Budget {
             let coefficient = self.inputs().correlation_at(i, j);
             Correlation { first: names[i], second: names[j], coefficient }
         };
+        let is_correlated = |i: usize| self.inputs().correlated_pairs().any(|(j, k)| i == j || i == k);
         let document = Document {
             name: self.name(),
             unit: self.unit(),
             estimate: self.estimate(),
             standard_uncertainty: self.standard_uncertainty(),
             effective_degrees_of_freedom: self.effective_degrees_of_freedom().and_then(finite),
-            contributions: self.contributions().map(|row| Row::new(self, row)).collect(),
+            contributions: self
+                .contributions()
+                .enumerate()
+                .map(|(i, row)| Row::new(self, row, is_correlated(i)))
+                .collect(),
             correlations: self.inputs().correlated_pairs().map(correlation).collect(),
             suspect: self.linearisation().is_suspect(),
         };

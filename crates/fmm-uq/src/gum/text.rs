@@ -11,7 +11,7 @@ use crate::rounding::{Rounding, degrees, percent, significant, suffix};
 const DIGITS: i32 = 3;
 /// Significant digits of a sensitivity, which carries no uncertainty of its own to round it by.
 const SENSITIVITY_DIGITS: i32 = 4;
-/// Coverage probability of the statement below a printed budget; [`Budget::statement`] has others.
+/// Coverage probability of the statement below a printed budget; [`Budget::at_level`] prints others.
 const LEVEL: f64 = 0.95;
 /// Columns that hold words, which begin on the left.
 const WORDS: [usize; 5] = [0, 2, 3, 4, 9];
@@ -76,6 +76,36 @@ impl fmt::Display for Budget {
     ///
     /// Values are rounded where their uncertainty is, so that the table never shows more than is known.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(f, LEVEL)
+    }
+}
+
+/// Budget as text with the expanded uncertainty for a coverage probability.
+struct AtLevel<'a>(&'a Budget, f64);
+
+impl fmt::Display for AtLevel<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.write(f, self.1)
+    }
+}
+
+impl Budget {
+    /// The printed budget with the expanded uncertainty for a coverage probability other than 95 %; without U unless
+    /// 0 < level < 1.
+    ///
+    /// ```
+    /// use fmm_uq::{Input, Inputs, propagate};
+    ///
+    /// let inputs = Inputs::new([Input::new("mass", 2.0, 0.01, "kg")?])?;
+    /// let budget = propagate(&inputs, |x| x[0] * 9.81)?.named("weight", "N");
+    /// assert!(budget.at_level(0.99).to_string().ends_with("U = 0.253 N (k = 2.58, 99 %, ν_eff = ∞)\n"));
+    /// # Ok::<(), fmm_uq::UncertaintyError>(())
+    /// ```
+    pub fn at_level(&self, level: f64) -> impl fmt::Display + '_ {
+        AtLevel(self, level)
+    }
+
+    fn write(&self, f: &mut fmt::Formatter<'_>, level: f64) -> fmt::Result {
         self.table(f)?;
         let inputs = self.inputs().as_slice();
         for (i, j) in self.inputs().correlated_pairs() {
@@ -84,7 +114,7 @@ impl fmt::Display for Budget {
         }
         writeln!(f)?;
         let unit = suffix(self.unit());
-        if let Ok(statement) = self.statement(LEVEL) {
+        if let Ok(statement) = self.statement(level) {
             writeln!(f, "{statement}")?;
         } else {
             let rounding = Rounding::of(self.standard_uncertainty());
@@ -113,9 +143,7 @@ impl fmt::Display for Budget {
             }
         }
     }
-}
 
-impl Budget {
     /// The result with its expanded uncertainty for a coverage probability.
     ///
     /// # Errors
