@@ -168,6 +168,17 @@ impl RecordError {
     }
 }
 
+/// Names in the sentence of an error at most, by judgement: a screen of them, and not a page.
+const MOST_NAMES: usize = 12;
+
+/// Names for an error that lists them, the first of many with the number of the others.
+pub(crate) fn listed(names: &[String]) -> String {
+    match names.len().checked_sub(MOST_NAMES) {
+        Some(others @ 1..) => format!("{} and {others} more", names[..MOST_NAMES].join(", ")),
+        _ => names.join(", "),
+    }
+}
+
 /// True for an error whose message has `text`.
 #[cfg(test)]
 pub(crate) fn says<T>(result: &Result<T, RecordError>, text: &str) -> bool {

@@ -1,5 +1,7 @@
 //! Sampling of a record: the uniform grid behind its time stamps, and the source of its rate.
 
+use fmm_model::Rounded;
+
 use crate::error::RecordError;
 
 /// Largest distance of a time stamp from the uniform grid, over the interval (1).
@@ -194,11 +196,16 @@ pub enum Sampling {
     },
 }
 
+/// A rate (Hz) to the digits that a reader compares.
+fn hertz(rate: f64) -> Rounded {
+    Rounded::new(rate, None)
+}
+
 /// Reads as the end of the sentence "the sampling rate was …".
 impl std::fmt::Display for Sampling {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Given { rate } => write!(f, "given as {rate} Hz"),
+            Self::Given { rate } => write!(f, "given as {} Hz", hertz(*rate)),
             Self::Times { name } => write!(f, "found from the time stamps in \"{name}\""),
             Self::TimesOfDay { name, first } => {
                 write!(f, "found from the times of day in \"{name}\", counted from the first, {first}")
@@ -209,12 +216,12 @@ impl std::fmt::Display for Sampling {
                     "found from the days in \"{name}\", which are those of a calendar, counted from the first, {first}"
                 )
             }
-            Self::RateVariable { name, rate } => write!(f, "read as {rate} Hz from the variable \"{name}\""),
+            Self::RateVariable { name, rate } => write!(f, "read as {} Hz from the variable \"{name}\"", hertz(*rate)),
             Self::IntervalVariable { name, interval } => {
                 write!(f, "found from the interval of {interval} s in the variable \"{name}\"")
             }
             Self::Header { interval, rate } => {
-                write!(f, "taken as {rate} Hz from the interval of {interval} s in the header of the data")
+                write!(f, "taken as {} Hz from the interval of {interval} s in the header of the data", hertz(*rate))
             }
         }
     }

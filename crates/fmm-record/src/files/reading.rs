@@ -1,6 +1,6 @@
 //! A reading: the record, and the choices in the file that led to it.
 
-use crate::error::RecordError;
+use crate::error::{RecordError, listed};
 use crate::record::Record;
 use crate::sampling::Sampling;
 use crate::units::label::{Label, without_groups};
@@ -76,7 +76,7 @@ pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[Stri
         }
         _ => {
             let candidate = |index: &usize| format!("\"{}\" at position {index}", written[*index]);
-            let candidates = found.iter().map(candidate).collect::<Vec<_>>().join(", ");
+            let candidates = listed(&found.iter().map(candidate).collect::<Vec<_>>());
             let count = found.len();
             let what = format!(
                 "{count} {kind}s are called {column}: {candidates}; choose one by its whole name or by its position, counted from 0"
@@ -138,5 +138,5 @@ impl std::fmt::Display for Column {
 
 /// Names for an error that lists them.
 pub(crate) fn quoted(names: &[String]) -> String {
-    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+    listed(&names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>())
 }

@@ -1,6 +1,6 @@
 //! Request: quantity and unit of a channel as the caller declares them, and the meaning that follows with the file.
 
-use crate::error::RecordError;
+use crate::error::{RecordError, listed};
 use crate::units::label::Label;
 use crate::units::{Quantity, WrittenUnit, unit_of_motion};
 
@@ -216,7 +216,7 @@ impl Request {
         };
         let [index] = found[..] else {
             let wanted = declared.map_or("motion".into(), |declared| declared.to_string());
-            let channels = labels.iter().map(Label::to_string).collect::<Vec<_>>().join(", ");
+            let channels = listed(&labels.iter().map(Label::to_string).collect::<Vec<_>>());
             let what = format!("it is not clear which channel is the {wanted}; there are: {channels}");
             return Err(RecordError::unclear(what, "choose one by `channel`"));
         };

@@ -1,6 +1,6 @@
 //! Arrays of a file, and the record of one of their series.
 
-use crate::error::RecordError;
+use crate::error::{RecordError, listed};
 use crate::files::Reader;
 use crate::files::arrays::{Array, Notation, Series, Slice};
 #[cfg(feature = "hdf5")]
@@ -93,7 +93,7 @@ impl ArrayFile {
 
     /// Names and sizes of the arrays, for an error that lists them.
     pub(super) fn listing(&self) -> String {
-        if self.arrays.is_empty() { "no real numeric arrays".into() } else { self.names().join(", ") }
+        if self.arrays.is_empty() { "no real numeric arrays".into() } else { listed(&self.names()) }
     }
 
     /// All series that may be channels or their times, in the order of the file.
@@ -112,7 +112,7 @@ impl ArrayFile {
             }
             Column::Index(index) => {
                 let offers = self.offers();
-                let written = || offers.iter().map(|offer| offer.written(self.notation)).collect::<Vec<_>>().join(", ");
+                let written = || listed(&offers.iter().map(|offer| offer.written(self.notation)).collect::<Vec<_>>());
                 let none = || format!("there is no channel {index}; there are, counted from 0: {}", written());
                 offers.get(*index).cloned().ok_or_else(|| RecordError::channel(none()))
             }

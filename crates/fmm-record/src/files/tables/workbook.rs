@@ -23,7 +23,7 @@ pub(in crate::files) fn text(bytes: Vec<u8>, table: Option<usize>) -> Result<(Ve
     }
     let filled: Vec<usize> = (0..sheets.len()).filter(|sheet| !sheets[*sheet].is_empty()).collect();
     let listed: Vec<String> = filled.iter().map(|sheet| format!("\"{}\" ({})", names[*sheet], sheet + 1)).collect();
-    let listed = listed.join(", ");
+    let listed = crate::error::listed(&listed);
     let largest = || filled.iter().copied().max_by_key(|sheet| (cells(&sheets[*sheet]), usize::MAX - sheet));
     let chosen = match table {
         Some(table) => table.checked_sub(1).filter(|sheet| filled.contains(sheet)),
