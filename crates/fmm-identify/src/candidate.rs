@@ -93,7 +93,11 @@ impl Candidate {
         let known = || Self::catalogue().iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
         let found = family_named(law, &mut Candidates);
         let found = found.ok_or_else(|| IdentifyError::UnknownName {
-            what: format!("there is no law called {law:?}; the laws are: {}", known()),
+            what: format!(
+                "there is no law called {law:?}{}; the laws are: {}",
+                meant(law, known().split(", ")),
+                known()
+            ),
         })?;
         let mut terms = Terms::NONE;
         for term in parts {
@@ -103,7 +107,8 @@ impl Candidate {
                 None => {
                     return Err(IdentifyError::UnknownName {
                         what: format!(
-                            "there is no term called {term:?} to put beside a law; the terms are: {}, any sign",
+                            "there is no term called {term:?} to put beside a law{}; the terms are: {}, any sign",
+                            meant(term, Term::names()),
                             Term::names().collect::<Vec<_>>().join(", ")
                         ),
                     });
@@ -188,9 +193,28 @@ impl Candidate {
     }
 }
 
+/// Letters that may differ from a name that is meant.
+const SLIPS: usize = 2;
+
+/// Question after the nearest of the `known` names, where one is near.
+fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let near = known.map(|known| (strsim::damerau_levenshtein(&name.to_lowercase(), known), known));
+    let near = near.filter(|(slips, known)| *slips <= SLIPS && *slips < known.len() / 2);
+    near.min().map_or_else(String::new, |(_, known)| format!(" (is {known} meant?)"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mistyped_law_or_term_gets_the_nearest_name() {
+        let refused = |name: &str| Candidate::named(name).unwrap_err().to_string();
+        assert!(refused("colomb").starts_with("there is no law called \"colomb\" (is coulomb meant?); the laws are: "));
+        assert!(refused("stribek + linear").contains("(is stribeck meant?)"));
+        assert!(refused("coulomb + qaudratic").contains("beside a law (is quadratic meant?); the terms are: "));
+        assert!(!refused("friction").contains("meant"));
+    }
 
     /// Bouc-Wen's law is Dahl's where the exponent of the latter is 1, and nowhere else.
     #[test]

@@ -24,6 +24,8 @@ pub enum Source {
     Gain,
     /// The gain of the instrument that measured the force.
     ForceGain,
+    /// The clock of the record.
+    Clock,
     /// The time at which a pulse acts.
     Timing,
     /// The steadiness of the friction that was declared.
@@ -42,6 +44,7 @@ impl fmt::Display for Source {
             Self::NormalLoad => "normal load",
             Self::Gain => "gain of the record",
             Self::ForceGain => "gain of the force",
+            Self::Clock => "clock of the record",
             Self::Timing => "time of the pulse",
             Self::Steadiness => "steadiness of the friction",
             Self::OtherLaws => "laws that are not excluded",
@@ -184,14 +187,35 @@ impl Finding {
     /// The interval that covers the quantity with probability `level`, in the unit of the parameter: value ± k u by
     /// Student's t with the [degrees of freedom](Self::degrees_of_freedom) (JCGM 100:2008, G.4), as far as the bounds
     /// of the parameter allow; of a value on its bound what lies within the bounds. `None` without an uncertainty, for
-    /// what was held, or for a level outside (0, 1).
+    /// what was held, where no width is left beside the digits of the value, or for a level outside (0, 1).
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         if self.origin == Origin::Fitted(EstimateStatus::Fixed) {
             return None;
         }
         let reach = self.uncertainty().or(self.at_bound)? * coverage_factor(level, self.degrees_of_freedom())?;
         let bounds = self.parameter.bounds();
-        Some((bounds.clamp(self.value - reach), bounds.clamp(self.value + reach)))
+        let (low, high) = (bounds.clamp(self.value - reach), bounds.clamp(self.value + reach));
+        let has_width = low < high && (low..=high).contains(&self.value);
+        // What is only known to be positive reaches down to zero.
+        let low = if low == f64::MIN_POSITIVE { 0.0 } else { low };
+        has_width.then_some((low, high))
+    }
+
+    /// Reason why it has no 95 % [interval](Self::interval); `None` if it has one.
+    pub fn without_interval(&self) -> Option<&'static str> {
+        if self.interval(0.95).is_some() {
+            return None;
+        }
+        Some(match (self.origin, self.unbounded_uncertainty()) {
+            (Origin::Fitted(EstimateStatus::Fixed), _) => "it was held, not found",
+            (Origin::Fitted(status), None) if status.is_at_bound() => {
+                "it lies on its bound, and the record does not tell how far from it it may be"
+            }
+            (Origin::Fitted(_), None) => "the record does not determine it",
+            (Origin::Derived, None) => "it follows from values that the record does not determine",
+            (_, Some(_)) if !self.parameter.bounds().contains(self.value) => "its value lies outside of its bounds",
+            (_, Some(_)) => "its uncertainty is zero, or lost in the digits of its value",
+        })
     }
 
     /// Value, uncertainty and unit as text.
@@ -247,5 +271,42 @@ impl Finding {
             Origin::Fitted(status) if status.is_at_bound() => Some("at its bound"),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_model::Bounds;
+
+    use super::*;
+
+    fn finding(value: f64, u: Option<f64>, bounds: Bounds, origin: Origin) -> Finding {
+        let parts = u.map(|u| vec![(Source::Residuals, u * u)]);
+        Finding::new(Parameter::new("level", "F", "N").bounded(bounds), value, parts, 50.0, origin, false)
+    }
+
+    /// An interval has a width and holds its value; without one a finding says why.
+    #[test]
+    fn an_interval_holds_its_value_or_is_none() {
+        let derived = |value, u, bounds| finding(value, u, bounds, Origin::Derived);
+        let (low, high) = derived(1.0, Some(2.0), Bounds::POSITIVE).interval(0.95).unwrap();
+        assert!(low == 0.0 && (high - 5.0).abs() < 0.1, "{low} to {high}");
+        let bounded = Bounds::new(0.1, 0.5628).unwrap();
+        for (found, why) in [
+            (derived(0.0, Some(0.0), Bounds::NOT_NEGATIVE), "its uncertainty is zero, or lost"),
+            (derived(f64::MIN_POSITIVE, Some(0.0), Bounds::POSITIVE), "its uncertainty is zero, or lost"),
+            (derived(1e20, Some(1.0), Bounds::UNBOUNDED), "its uncertainty is zero, or lost"),
+            (derived(2.2509, Some(0.01), bounded), "its value lies outside of its bounds"),
+            (derived(1.0, None, Bounds::UNBOUNDED), "it follows from values that the record does not determine"),
+            (finding(1.0, None, bounded, Origin::Fitted(EstimateStatus::Fixed)), "it was held, not found"),
+        ] {
+            assert_eq!(found.interval(0.95), None, "{found:?}");
+            assert!(
+                found.without_interval().is_some_and(|said| said.starts_with(why)),
+                "{:?}",
+                found.without_interval()
+            );
+        }
+        assert_eq!(derived(1.0, Some(0.1), Bounds::UNBOUNDED).without_interval(), None);
     }
 }

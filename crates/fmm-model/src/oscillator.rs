@@ -143,6 +143,19 @@ impl<D: Scalar> Oscillator<D> {
         let damped = self.damped_angular_frequency()?;
         Some(self.damping.linear_coefficient() * PI / (self.mass * damped))
     }
+
+    /// Q = 1/(2ζ), quality factor of the linear damping (1); `None` without damping.
+    pub fn quality_factor(&self) -> Option<D> {
+        let ratio = self.damping_ratio();
+        (ratio.value() != 0.0).then(|| D::from(0.5) / ratio)
+    }
+
+    /// τ = 2m/c₁, time in which the amplitude falls by a factor of e under the linear damping alone (s); `None` without
+    /// damping.
+    pub fn time_constant(&self) -> Option<D> {
+        let linear = self.damping.linear_coefficient();
+        (linear.value() != 0.0).then(|| self.mass * 2.0 / linear)
+    }
 }
 
 #[cfg(test)]

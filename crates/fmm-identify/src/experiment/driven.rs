@@ -52,7 +52,7 @@ impl Experiment {
             let (subject, needed) = ("the response of a driven machine", "a displacement or a velocity");
             return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
-        let (record, gain_uncertainty) = usable(response, preparation)?;
+        let (record, gain_uncertainty, clock_uncertainty) = usable(response, preparation)?;
         let first = record.values()[0];
         drive.require_within(record.start(), record.end())?;
         let held_offset = match preparation.offset {
@@ -76,6 +76,7 @@ impl Experiment {
             samples: kept.iter().map(Range::len).sum(),
             held_offset,
             gain_uncertainty,
+            clock_uncertainty,
             half_swings: swings.peaks().len(),
             amplitudes: (amplitude, amplitude),
             resolution: examination.resolution(),

@@ -1,6 +1,7 @@
 //! Experiments on a machine: what was done to it and the record of its response, made ready for identification.
 
 mod acceleration;
+pub(crate) mod clock;
 mod drive;
 mod driven;
 pub(crate) mod first_guess;
@@ -28,6 +29,7 @@ use fmm_record::{Quantity, Record};
 pub use drive::Drive;
 pub(crate) use driven::DrivenGuess;
 pub use impact_trial::{ImpactSummary, ImpactTrial};
+pub(crate) use preparation::digits;
 pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
@@ -503,9 +505,11 @@ pub(crate) fn scaled(experiments: &[Experiment]) -> impl Iterator<Item = (&Exper
     experiments.iter().map(move |experiment| (experiment, weight(experiment)))
 }
 
-/// The part of a `record` that its `preparation` keeps, and the relative standard uncertainty of its gain (1).
-fn usable(record: &Record, preparation: &Preparation) -> Result<(Record, f64), IdentifyError> {
+/// The part of a `record` that its `preparation` keeps, and the relative standard uncertainties of its gain and of its
+/// clock (1).
+fn usable(record: &Record, preparation: &Preparation) -> Result<(Record, f64, f64), IdentifyError> {
     let gain_uncertainty = ModelError::require_not_negative("gain uncertainty", preparation.gain_uncertainty, "")?;
+    let clock_uncertainty = ModelError::require_not_negative("clock uncertainty", preparation.clock_uncertainty, "")?;
     let (from, to) = (preparation.from.unwrap_or(record.start()), preparation.to.unwrap_or(record.end()));
     let record = record.crop(from, to)?;
     if record.len() < FEWEST_SAMPLES {
@@ -515,5 +519,5 @@ fn usable(record: &Record, preparation: &Preparation) -> Result<(Record, f64), I
     if record.values().iter().all(|value| *value == first) {
         return Err(IdentifyError::no_motion(first, record.unit()));
     }
-    Ok((record, gain_uncertainty))
+    Ok((record, gain_uncertainty, clock_uncertainty))
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fmm_model::Rounded;
 use fmm_record::{Hum, Interruption, OffsetStep, Quantity, Record, Saturation, SecondMode, Upsampling};
 
 /// Choices in preparing a record. The default uses the record from the release to the next, and fits its offset.
@@ -19,6 +20,7 @@ pub struct Preparation {
     pub(crate) to: Option<f64>,
     pub(crate) offset: Offset,
     pub(crate) gain_uncertainty: f64,
+    pub(crate) clock_uncertainty: f64,
 }
 
 /// Treatment of the offset of a record.
@@ -67,6 +69,16 @@ impl Preparation {
         self.gain_uncertainty = relative;
         self
     }
+
+    /// Relative standard uncertainty of the sampling rate (1), 0 unless it is stated.
+    ///
+    /// A clock that runs slow by a factor turns up in frequency and damping as that factor, and in friction per mass as
+    /// its square for a displacement, itself for a velocity, and not at all for an acceleration.
+    #[must_use]
+    pub fn clock_uncertainty(mut self, relative: f64) -> Self {
+        self.clock_uncertainty = relative;
+        self
+    }
 }
 
 /// Description of a prepared record and of everything seen in it. `Display` gives one sentence.
@@ -89,6 +101,8 @@ pub struct RecordSummary {
     pub held_offset: Option<f64>,
     /// Relative standard uncertainty of the instrument's gain (1).
     pub gain_uncertainty: f64,
+    /// Relative standard uncertainty of the sampling rate (1).
+    pub clock_uncertainty: f64,
     /// When the motion was released (s), if the record begins at rest or in a slow motion.
     pub release: Option<f64>,
     /// Half swings that stand out of the noise.
@@ -142,6 +156,7 @@ impl RecordSummary {
             unit: record.unit().to_owned(),
             held_offset: None,
             gain_uncertainty: 0.0,
+            clock_uncertainty: 0.0,
             release: None,
             half_swings: 0,
             amplitudes: (0.0, 0.0),
@@ -168,9 +183,16 @@ impl RecordSummary {
     }
 }
 
+/// `value` to so many significant digits.
+pub(crate) fn digits(value: f64, count: usize) -> String {
+    let rounded = format!("{value:.*e}", count.saturating_sub(1)).parse().unwrap_or(value);
+    Rounded::every_digit(rounded)
+}
+
 impl fmt::Display for RecordSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { from, to, samples, rate, quantity, unit, half_swings, frequency, noise, .. } = self;
+        let rate = Rounded::new(*rate, None);
         write!(f, "{quantity} in {unit}, {samples} samples at {rate} Hz from {from:.3} s to {to:.3} s")?;
         if let Some(time) = self.release {
             write!(f, ", released at {time:.4} s")?;
@@ -179,11 +201,14 @@ impl fmt::Display for RecordSummary {
             None => write!(f, "; offset fitted")?,
             Some(value) => write!(f, "; offset held at {value:.6} {unit}")?,
         }
-        let (first, last) = self.amplitudes;
-        write!(f, "; {half_swings} half swings at {frequency:.4} Hz, amplitude {first:.3e} to {last:.3e} {unit}")?;
-        write!(f, "; noise {noise:.1e} {unit}")?;
+        let (first, last) = (digits(self.amplitudes.0, 4), digits(self.amplitudes.1, 4));
+        write!(
+            f,
+            "; {half_swings} half swings above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}"
+        )?;
+        write!(f, "; noise {} {unit}", digits(*noise, 2))?;
         if let Some(step) = self.resolution {
-            write!(f, ", resolution {step:.2e} {unit}")?;
+            write!(f, ", resolution {} {unit}", digits(step, 3))?;
         }
         Ok(())
     }

@@ -46,7 +46,7 @@ impl Experiment {
             let (subject, needed) = ("a ring-down", "a displacement, a velocity or an acceleration");
             return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
-        let (record, gain_uncertainty) = usable(record, preparation)?;
+        let (record, gain_uncertainty, clock_uncertainty) = usable(record, preparation)?;
         let (record, upsampling) = measured(record)?;
         let (first, end) = (record.start(), record.end());
         let views = Views::of(record)?;
@@ -110,6 +110,7 @@ impl Experiment {
             unit: record.unit().to_owned(),
             held_offset,
             gain_uncertainty,
+            clock_uncertainty,
             release: released,
             half_swings: peaks.len(),
             amplitudes: (in_record * amplitudes[0], in_record * amplitudes[amplitudes.len() - 1]),

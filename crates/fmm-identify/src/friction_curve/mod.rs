@@ -15,6 +15,7 @@ pub use level::FrictionLevel;
 
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
+use crate::experiment::clock::Clock;
 use crate::friction_curve::fit::CurveFit;
 use crate::friction_curve::levels::{KNOTS, LEVELS, weights};
 use crate::friction_curve::mixture::Posterior;
@@ -136,6 +137,12 @@ impl FrictionCurve {
         let fit = CurveFit::of(machine, &terms, experiments)?;
         let units = Units::of(reference.record());
         let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
+        let clock = Clock::of(experiments);
+        // A mass that follows from a stiffness goes with the square of a period.
+        let by_clock = match machine.scale() {
+            Scale::Stiffness(_) => clock.order,
+            _ => clock.order - 2.0,
+        } * clock.uncertainty;
         let (meaning, factor, relative) = scale(machine, &units, fit.frequency);
         let unit = match meaning {
             Meaning::Coefficient => Unit::default().to_string(),
@@ -154,7 +161,7 @@ impl FrictionCurve {
             speed_unit: units.velocity().to_string(),
             unit_factor: factor,
             factor: factor * fit.scale,
-            factor_uncertainty: relative.hypot(gain),
+            factor_uncertainty: relative.hypot(gain).hypot(by_clock),
             posterior: fit.posterior,
             freedom: fit.freedom,
             path: fit.path,

@@ -2,6 +2,7 @@
 
 use fmm_fit::Fit;
 
+use crate::experiment::clock::Clock;
 use crate::finding::{Finding, Origin, Source};
 use crate::machine::Machine;
 use crate::quantities::derived::{Derived, Inputs, KNOWN};
@@ -18,15 +19,19 @@ pub(crate) fn findings(
     fit: &Fit,
     covariance: &Covariance,
     gain_uncertainty: f64,
+    clock: &Clock,
 ) -> Vec<Finding> {
     let count = fit.values().len();
+    let by_clock: Vec<f64> = (0..count)
+        .map(|index| clock.uncertainty * table.power_of_clock(index, fit.values(), clock.order) * fit.values()[index])
+        .collect();
     let mut findings = Vec::new();
     for (index, estimate) in fit.estimates().iter().enumerate() {
         // What is proportional to a power of the record is uncertain with its gain.
         let gain = gain_uncertainty * table.power_of_gain(index, fit.values()) * estimate.value();
         let mut gradient = vec![0.0; count];
         gradient[index] = 1.0;
-        let known = [(Source::Gain, gain)];
+        let known = [(Source::Gain, gain), (Source::Clock, by_clock[index])];
         let parts = variances(covariance, &gradient, &known, false);
         let relaxed = Some(estimate).filter(|estimate| estimate.status().is_at_bound()).and(covariance.relaxed(index));
         let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
@@ -38,8 +43,14 @@ pub(crate) fn findings(
     let inputs = Inputs { machine, shared, table, gain: 1.0, gain_uncertainty };
     for Derived { parameter, value, gradient } in inputs.with_gradients() {
         let (by_shared, by_known) = gradient.split_at(gradient.len() - KNOWN);
-        let known: Vec<(Source, f64)> =
-            inputs.uncertainties().into_iter().zip(by_known).map(|((source, u), slope)| (source, slope * u)).collect();
+        let by_clock = by_shared.iter().zip(&by_clock).map(|(slope, moved)| slope * moved).sum();
+        let known: Vec<(Source, f64)> = inputs
+            .uncertainties()
+            .into_iter()
+            .zip(by_known)
+            .map(|((source, u), slope)| (source, slope * u))
+            .chain([(Source::Clock, by_clock)])
+            .collect();
         let parts = variances(covariance, by_shared, &known, false);
         let relaxed = variances(covariance, by_shared, &known, true);
         let relaxed = relaxed.map(|parts| parts.iter().map(|(_, variance)| variance).sum::<f64>().sqrt());

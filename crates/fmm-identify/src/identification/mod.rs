@@ -14,6 +14,7 @@ use fmm_fit::{Estimate, EvaluationError, Fit, Options};
 use fmm_friction::Role;
 
 use crate::error::IdentifyError;
+use crate::experiment::clock::Clock;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::scaled;
 use crate::experiment::{Experiment, Experiments};
@@ -101,7 +102,7 @@ impl Identification {
         let mut structure = ResidualStructure::of(&fit, problem.records());
         structure.residual *= spread.sqrt();
         let covariance = Covariance::of(problem, &fit, &structure).map_err(failure)?.times(spread);
-        let findings = findings(machine, table, &fit, &covariance, gain);
+        let findings = findings(machine, table, &fit, &covariance, gain, &Clock::of(decays));
         if let Some(finding) = findings.iter().find(|finding| !finding.is_representable()) {
             return Err(IdentifyError::beyond_numbers(finding.parameter(), finding.value()));
         }

@@ -11,6 +11,7 @@ use crate::judgement::filtering::{filtering_sensor, other_quantity};
 use crate::judgement::rules::{FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
+use crate::quantities::derived::OF_DAMPING;
 use crate::warning::Warning;
 
 /// Identifications of the same records by several laws.
@@ -183,7 +184,8 @@ fn widen_for_other_laws(
             let average = &mut averages[place];
             average.weights += weight;
             average.sum += square;
-            if square > average.largest && !own.is_of_record() {
+            // What states the damping once more needs no sentence of its own.
+            if square > average.largest && !own.is_of_record() && !OF_DAMPING.contains(&name) {
                 average.largest = square;
                 average.warning = Some(Warning::DependsOnLaw {
                     parameter: name.to_owned(),
@@ -238,6 +240,11 @@ impl Comparison {
     /// The data decide for the preferred law.
     pub fn is_decided(&self) -> bool {
         self.judgement.is_decided
+    }
+
+    /// The data decide for the preferred law, and it leaves nothing but noise of the records.
+    pub fn is_conclusive(&self) -> bool {
+        self.is_decided() && !self.preferred().structure.is_structured()
     }
 
     /// The laws that the records do not exclude, the preferred one among them.

@@ -124,6 +124,13 @@ impl Law {
         let force = if is_force(parameter.role()) || parameter.role() == Role::Slope { 1.0 } else { 0.0 };
         force + self.powers(parameter).position
     }
+
+    /// The power of a factor on all times to which `parameter` is proportional beside a force, if the record is the
+    /// `order`th derivative of the position.
+    pub(crate) fn power_of_clock(&self, parameter: &LawParameter, order: f64) -> f64 {
+        let Powers { position, time, .. } = self.powers(parameter);
+        order * position + time
+    }
 }
 
 impl Scales {
@@ -210,5 +217,8 @@ mod tests {
         let powers = ALL.each_ref().map(|parameter| law().power_of_gain(parameter));
         // A slope is a force per speed, which a gain does not change.
         assert_eq!(powers, [1.0, 1.0, -1.0, -1.0, 0.0, 0.0]);
+        // By a record of velocities, a clock leaves speeds as they are.
+        let powers = ALL.each_ref().map(|parameter| law().power_of_clock(parameter, 1.0));
+        assert_eq!(powers, [0.0, 0.0, 0.0, 0.0, -1.0, 0.0]);
     }
 }

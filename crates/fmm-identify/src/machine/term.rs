@@ -144,6 +144,19 @@ impl Term {
         }
     }
 
+    /// The power of a factor on all times to which its parameter is proportional, if the record is the `order`th
+    /// derivative of the position; `exponent` is that of a power-law damping.
+    pub(crate) fn power_of_clock(self, exponent: f64, order: f64) -> f64 {
+        let of_length = order * self.power_of_gain(exponent);
+        of_length
+            + match self {
+                Self::LinearDamping | Self::Change | Self::CurvedChange => -1.0,
+                Self::CubicDamping => 1.0,
+                Self::PowerDamping => exponent - 2.0,
+                _ => 0.0,
+            }
+    }
+
     /// The stiffness that a term of the spring adds, k k₃/m or k k₅/m, for positions in units of `position`; `None` for
     /// other terms.
     pub(crate) fn stiffness_per_mass(self, position: &Unit) -> Option<Parameter> {

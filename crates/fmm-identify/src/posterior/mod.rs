@@ -16,6 +16,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
+use crate::experiment::clock::Clock;
 use crate::finding::Origin;
 use crate::identification::Identification;
 use crate::posterior::intervals::{LEVEL, compared};
@@ -122,6 +123,7 @@ impl Identification {
         let failed = |source: FitError| IdentifyError::Posterior { law: self.law().to_owned(), source };
         let posterior = sampler.sample(&problem, self.fit()).map_err(failed)?;
         let gain = experiments.iter().map(|experiment| experiment.summary().gain_uncertainty).fold(0.0, f64::max);
+        let clock = Clock::of(&experiments);
         let mut random = ChaCha8Rng::seed_from_u64(sampler.seed());
         // Behind the streams of the chains.
         random.set_stream(u64::MAX);
@@ -131,7 +133,13 @@ impl Identification {
             // A gain that is wrong by more than its own size is no gain.
             let gain = (1.0 + gain * normal()).max(f64::EPSILON);
             let machine = self.machine().with_scale_and_load_moved([normal(), normal()]);
-            values_of_findings(&machine, &problem.table, draw, gain)
+            let pace =
+                if clock.uncertainty > 0.0 { (1.0 + clock.uncertainty * normal()).max(f64::EPSILON) } else { 1.0 };
+            let table = &problem.table;
+            let by_clock =
+                |(index, value): (usize, &f64)| value * pace.powf(table.power_of_clock(index, draw, clock.order));
+            let draw: Vec<f64> = draw.iter().enumerate().map(by_clock).collect();
+            values_of_findings(self.findings(), &machine, table, &draw, gain)
         };
         let draws: Vec<Vec<f64>> = posterior.draws().map(with_known).collect();
         let is_fixed = |origin: Origin| origin == Origin::Fitted(fmm_fit::EstimateStatus::Fixed);

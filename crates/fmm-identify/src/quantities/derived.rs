@@ -1,8 +1,10 @@
 //! Quantities that follow from the rows of a table, with their uncertainties.
 
 use fmm_friction::Role;
-use fmm_model::{Bounds, Dual, Parameter, Scalar};
+use fmm_model::{Bounds, Damping, Dual, Oscillator, Parameter, Scalar};
 
+#[cfg(feature = "sampler")]
+use crate::finding::Finding;
 use crate::finding::Source;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
@@ -20,6 +22,9 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gain: f64,
     pub(crate) gain_uncertainty: f64,
 }
+
+/// Names of what states a linear damping once more.
+pub(crate) const OF_DAMPING: [&str; 4] = ["damping_ratio", "quality_factor", "logarithmic_decrement", "time_constant"];
 
 /// Inputs that were not fitted: scale of the machine, normal load, gain of the instrument, gain of a measured force.
 pub(crate) const KNOWN: usize = 4;
@@ -90,6 +95,9 @@ impl Inputs<'_> {
                 derived.push((parameter, value / mass_of_stiffness(D::from(1.0), natural_frequency)));
             }
         }
+        if self.table.is_per_mass() {
+            derived.extend(self.of_damping(natural_frequency, mass, &variable).into_iter().flatten());
+        }
         if let Some(index) = self.table.shared(Place::Term(Term::Change)).filter(|_| self.table.is_per_mass()) {
             let per_half_cycle = variable(self.shared[index], index) / (natural_frequency * 2.0);
             derived.push((Parameter::new(CHANGE_PER_HALF_CYCLE, "w/2f₀", "1"), per_half_cycle));
@@ -129,6 +137,42 @@ impl Inputs<'_> {
     }
 }
 
+impl Inputs<'_> {
+    /// ζ, Q, δ and τ of all linear damping, at this natural frequency (Hz) of this `mass` (kg); none without damping,
+    /// nor at or above the critical one.
+    fn of_damping<D: Scalar>(
+        &self,
+        natural_frequency: D,
+        mass: Option<D>,
+        variable: &impl Fn(f64, usize) -> D,
+    ) -> Option<[(Parameter, D); 4]> {
+        let Table { family, law, .. } = self.table;
+        let fitted = |index: usize| variable(self.shared[index], index);
+        // A straight line over the speed, on a level or not, is a linear damping; the slope of other laws is none.
+        let is_line = family.fitted().all(|parameter| matches!(parameter.role(), Role::Level | Role::Slope));
+        let slope = family.fitted().position(|parameter| is_line && parameter.role() == Role::Slope);
+        let term = self.table.shared(Place::Term(Term::LinearDamping));
+        let declared = self.machine.damping().map(|damping| {
+            let damping = self.table.shared(Place::MachineDamping).map_or(D::from(damping.value()), fitted);
+            mass.map_or(damping, |mass| damping / mass)
+        });
+        let parts = [term.map(fitted), slope.map(|slope| fitted(law + slope)), declared];
+        let linear = parts.into_iter().flatten().fold(D::from(0.0), |sum, part| sum + part);
+        let oscillator =
+            Oscillator::per_unit_mass(natural_frequency).ok()?.with_damping(Damping::new(linear, D::from(0.0)).ok()?);
+        let stated = |name, symbol, unit, value: D| {
+            let is_number = value.value().is_normal() && (value.value() * value.value()).is_normal();
+            is_number.then(|| (Parameter::new(name, symbol, unit).bounded(Bounds::POSITIVE), value))
+        };
+        Some([
+            stated(OF_DAMPING[0], "ζ", "1", oscillator.damping_ratio())?,
+            stated(OF_DAMPING[1], "Q", "1", oscillator.quality_factor()?)?,
+            stated(OF_DAMPING[2], "δ", "1", oscillator.logarithmic_decrement()?)?,
+            stated(OF_DAMPING[3], "τ", "s", oscillator.time_constant()?)?,
+        ])
+    }
+}
+
 /// A quantity that follows from shared values and inputs, with its derivatives by all of them.
 pub(crate) struct Derived {
     pub(crate) parameter: Parameter,
@@ -142,12 +186,23 @@ pub(crate) fn derived(machine: &Machine, table: &Table, shared: &[f64]) -> Vec<D
     Inputs { machine, shared, table, gain: 1.0, gain_uncertainty: 0.0 }.with_gradients()
 }
 
-/// The values of all findings, in the order of [`findings`], for one draw of the fitted `values`, of what is known of
-/// the machine, and of the error of the `gain` of the instrument, as a factor (1).
+/// The values of these `findings`, the fitted ones first, for one draw of the fitted `values`, of what is known of the
+/// machine, and of the error of the `gain` of the instrument, as a factor (1); NaN for one that the draw does not have.
 #[cfg(feature = "sampler")]
-pub(crate) fn values_of_findings(machine: &Machine, table: &Table, values: &[f64], gain: f64) -> Vec<f64> {
+pub(crate) fn values_of_findings(
+    findings: &[Finding],
+    machine: &Machine,
+    table: &Table,
+    values: &[f64],
+    gain: f64,
+) -> Vec<f64> {
     let fitted = values.iter().enumerate();
     let fitted = fitted.map(|(index, value)| value * gain.powf(-table.power_of_gain(index, values)));
     let inputs = Inputs { machine, shared: &values[..table.shared], table, gain, gain_uncertainty: 0.0 };
-    fitted.chain(inputs.derived::<f64>(0).into_iter().map(|(_, value)| value)).collect()
+    let derived = inputs.derived::<f64>(0);
+    let named = |finding: &Finding| {
+        let (_, value) = derived.iter().find(|(parameter, _)| parameter.name() == finding.parameter().name())?;
+        Some(*value)
+    };
+    fitted.chain(findings.iter().skip(values.len()).map(|finding| named(finding).unwrap_or(f64::NAN))).collect()
 }

@@ -415,12 +415,38 @@ impl Table {
             Place::Law(number) => self.family.fitted().nth(number).map_or(0.0, |parameter| {
                 self.family.power_of_gain(parameter) + if self.is_scaled_by_force(index) { by_force } else { 0.0 }
             }),
-            Place::Term(term) => {
-                let exponent = self.shared(Place::Term(Term::PowerExponent)).map_or(1.0, |index| values[index]);
-                term.power_of_gain(exponent)
-            }
+            Place::Term(term) => term.power_of_gain(self.exponent_of_damping(values)),
             _ => 0.0,
         }
+    }
+
+    /// The power of a factor on all times to which the row at `index`, of these `values`, is proportional, if the
+    /// record is the `order`th derivative of the position.
+    ///
+    /// ```text
+    /// L Tˢ ~ g^(order + s),  as a record of L/T^order keeps its values
+    /// ```
+    pub(crate) fn power_of_clock(&self, index: usize, values: &[f64], order: f64) -> f64 {
+        let force = if self.is_per_mass() { order - 2.0 } else { 0.0 };
+        match self.rows[index].place {
+            Place::Frequency | Place::Corner => -1.0,
+            Place::Position | Place::Deflection => order,
+            Place::Velocity => order - 1.0,
+            Place::Delay => 1.0,
+            // A measured force stays as it is.
+            Place::Mass if !self.is_per_mass() => 2.0 - order,
+            Place::Stiffness if !self.is_per_mass() => -order,
+            Place::Law(number) => self.family.fitted().nth(number).map_or(0.0, |parameter| {
+                self.family.power_of_clock(parameter, order) + if self.is_scaled_by_force(index) { force } else { 0.0 }
+            }),
+            Place::Term(term) => term.power_of_clock(self.exponent_of_damping(values), order),
+            _ => 0.0,
+        }
+    }
+
+    /// Exponent of a damping with a free power; 1 without.
+    fn exponent_of_damping(&self, values: &[f64]) -> f64 {
+        self.shared(Place::Term(Term::PowerExponent)).map_or(1.0, |index| values[index])
     }
 }
 

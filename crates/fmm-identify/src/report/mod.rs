@@ -7,6 +7,7 @@ use std::fmt;
 
 use fmm_uq::Contribution;
 
+use crate::experiment::digits;
 use crate::finding::{Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
@@ -26,9 +27,11 @@ impl Identification {
                 Some(time) => format!("at rest from {time:.4} s"),
                 None => "still moving at the end of the record".to_owned(),
             };
+            let count = motion.half_swings();
             let seen = rests.get(record).copied().flatten();
-            let ends = seen.map_or(ends.clone(), |time| format!("{ends} (the record rests from {time:.3} s)"));
-            writeln!(f, "  {which}{} half swings, {ends}", motion.half_swings())?;
+            let ends =
+                seen.map_or(ends.clone(), |time| format!("{ends}; within its noise the record rests from {time:.3} s"));
+            writeln!(f, "  {which}the fitted motion has {count} half swings, {ends}")?;
         }
         Ok(())
     }
@@ -98,9 +101,18 @@ impl Comparison {
         let sure = match (self.is_decided(), others.is_empty()) {
             _ if !is_explained => "of the laws that were tried none explains the record to its noise".to_owned(),
             (true, true) if is_alone => "no other law was tried".to_owned(),
-            (true, true) => "the record excludes every other law that was tried".to_owned(),
+            (true, true) => {
+                let count = self.identifications().len() - 1 + self.excluded().len();
+                let others =
+                    if count == 1 { "other law that was".to_owned() } else { format!("{count} other laws that were") };
+                format!("the record excludes the {others} tried")
+            }
             (true, false) => format!("the record neither asks for more nor excludes it ({})", others.join(", ")),
-            (false, true) => "a law that was tried could not be fitted to the end".to_owned(),
+            (false, true) if self.warnings().iter().any(|warning| matches!(warning, Warning::OtherLaw { .. })) => {
+                "a law that was tried could not be fitted to the end".to_owned()
+            }
+            (false, true) if !preferred.fit().outcome().is_success() => "its fit did not end".to_owned(),
+            (false, true) => "the record does not decide, for what its warnings say".to_owned(),
             (false, false) => format!("the record does not decide: {} may be true as well", others.join(", ")),
         };
         let surer = if preferred.force_unit().is_some() {
@@ -115,15 +127,55 @@ impl Comparison {
         } else if is_alone {
             "a comparison with other laws would show whether the record asks for this one"
         } else if self.is_decided() {
-            "more half swings or less noise would make it surer"
+            "more half swings or less noise would make its values surer"
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
         };
+        let bound = self.friction_bound();
+        let bound = bound.map_or_else(String::new, |bound| format!("; {bound}"));
         let is_odd =
             |warning: &&Warning| matches!(warning, Warning::Implausible { .. } | Warning::OtherQuantity { .. });
         let odd = self.warnings().iter().find(is_odd);
         let odd = odd.map_or_else(String::new, |odd| format!("; but {odd}"));
-        format!("{}: {found}{odd}; {sure}; {surer}.", preferred.law())
+        format!("{}: {found}{bound}{odd}; {sure}; {surer}.", preferred.law())
+    }
+}
+
+/// Upper bound of a friction that the records do not show.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FrictionBound {
+    /// The law with this friction beside the damping.
+    pub(crate) law: String,
+    pub(crate) name: String,
+    pub(crate) unit: String,
+    /// End of its 95 % interval.
+    pub(crate) upper_95: f64,
+}
+
+impl fmt::Display for FrictionBound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { law, name, unit, upper_95 } = self;
+        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+        write!(f, "no dry friction is seen: {law} allows a {name} of {}{unit} at most (95 %)", digits(*upper_95, 3))
+    }
+}
+
+impl Comparison {
+    /// Upper bound of the dry friction where the preferred law has none: that of the best law with a level.
+    pub(crate) fn friction_bound(&self) -> Option<FrictionBound> {
+        if self.preferred().force_unit().is_some() || self.preferred().family().level().is_some() {
+            return None;
+        }
+        let scored = self.identifications().iter().zip(self.scores());
+        let levelled = scored.filter(|(found, _)| matches!(found.family().dry_name(), Some("coulomb")));
+        let upper = |found: &Identification| {
+            let sliding = *found.main_findings().first()?;
+            Some((sliding.parameter().clone(), sliding.interval(0.95)?.1))
+        };
+        let bounded = levelled.filter_map(|(found, score)| Some((found, upper(found)?, *score)));
+        let (found, (parameter, upper_95), _) = bounded.min_by(|a, b| a.2.total_cmp(&b.2))?;
+        let (name, unit) = (parameter.name().to_owned(), parameter.unit().to_owned());
+        Some(FrictionBound { law: found.law().to_owned(), name, unit, upper_95 })
     }
 }
 
@@ -169,10 +221,13 @@ impl fmt::Display for Comparison {
         }
         let is_simple = matches!(self.preferred().family().dry_name(), None | Some("coulomb"));
         if significant.is_empty() && !self.score_tests().is_empty() && is_simple {
-            writeln!(
-                f,
-                "  looked for and not seen: friction that changes with speed, quadratic damping, presliding, a softening spring"
-            )?;
+            // A law that has it does not look for it.
+            let law = self.preferred().law();
+            let own = [("quadratic damping", "quadratic"), ("a softening spring", "spring")];
+            let further = own.iter().filter(|(_, term)| !law.contains(term)).map(|(words, _)| *words);
+            let looked: Vec<&str> =
+                ["friction that changes with speed", "presliding"].into_iter().chain(further).collect();
+            writeln!(f, "  looked for and not seen: {}", looked.join(", "))?;
         }
         let preferred = self.preferred();
         let confidence = if self.is_decided() { "" } else { ", though the record does not decide" };

@@ -10,6 +10,7 @@ use crate::experiment::RecordSummary;
 use crate::finding::{Finding, Origin};
 use crate::identification::Identification;
 use crate::judgement::{Comparison, FrictionChange, ScoreTest};
+use crate::report::FrictionBound;
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -24,10 +25,11 @@ impl Serialize for Finding {
         let freedom = Some(self.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
         let budget = self.budget();
         let contributions: Vec<Part<'_>> = budget.iter().flat_map(Budget::contributions).map(Part).collect();
-        let mut document = serializer.serialize_struct("Finding", 7)?;
+        let mut document = serializer.serialize_struct("Finding", 8)?;
         document.serialize_field("value", &self.value())?;
         document.serialize_field("u", &self.uncertainty())?;
         document.serialize_field("interval_95", &self.interval(0.95))?;
+        document.serialize_field("no_interval", &self.without_interval())?;
         document.serialize_field("degrees_of_freedom", &freedom)?;
         document.serialize_field("unit", self.parameter().unit())?;
         document.serialize_field("status", status)?;
@@ -45,7 +47,7 @@ impl Serialize for Part<'_> {
         let mut document = serializer.serialize_struct("Contribution", 4)?;
         document.serialize_field("source", self.0.input.name())?;
         document.serialize_field("u", &self.0.uncertainty)?;
-        document.serialize_field("share", &self.0.share)?;
+        document.serialize_field("share", &self.0.share.clamp(0.0, 1.0))?;
         document.serialize_field("degrees_of_freedom", &freedom)?;
         document.end()
     }
@@ -80,7 +82,7 @@ impl Serialize for Identification {
 /// Record: times in s, rates in Hz, values in `unit`.
 impl Serialize for RecordSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("RecordSummary", 26)?;
+        let mut document = serializer.serialize_struct("RecordSummary", 27)?;
         document.serialize_field("from_s", &self.from)?;
         document.serialize_field("to_s", &self.to)?;
         document.serialize_field("samples", &self.samples)?;
@@ -89,6 +91,7 @@ impl Serialize for RecordSummary {
         document.serialize_field("unit", &self.unit)?;
         document.serialize_field("offset_held_at", &self.held_offset)?;
         document.serialize_field("gain_uncertainty", &self.gain_uncertainty)?;
+        document.serialize_field("clock_uncertainty", &self.clock_uncertainty)?;
         document.serialize_field("release_s", &self.release)?;
         document.serialize_field("half_swings", &self.half_swings)?;
         document.serialize_field("first_amplitude", &self.amplitudes.0)?;
@@ -123,6 +126,18 @@ impl Serialize for FrictionChange {
     }
 }
 
+/// `name` and `unit` of the friction, `upper_95`, and the `law` that has it.
+impl Serialize for FrictionBound {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut document = serializer.serialize_struct("FrictionBound", 4)?;
+        document.serialize_field("name", &self.name)?;
+        document.serialize_field("unit", &self.unit)?;
+        document.serialize_field("upper_95", &self.upper_95)?;
+        document.serialize_field("law", &self.law)?;
+        document.end()
+    }
+}
+
 /// The extension, its size and standard uncertainty.
 impl Serialize for ScoreTest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -135,14 +150,14 @@ impl Serialize for ScoreTest {
 }
 
 /// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` and `excluded_without_fit`
-/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `p` and `scores` (one per model, by which
+/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `friction_bound` (where it has none), `p` and `scores` (one per model, by which
 /// laws are preferred), `models`, `preparation` (one object, or a list if there are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 13)?;
+        let mut document = serializer.serialize_struct("Comparison", 14)?;
         document.serialize_field("preferred", self.preferred().law())?;
-        document.serialize_field("decided", &self.is_decided())?;
+        document.serialize_field("decided", &self.is_conclusive())?;
         document.serialize_field("summary", &self.headline())?;
         let left: Vec<&str> = self.not_excluded().map(Identification::law).collect();
         document.serialize_field("not_excluded", &left)?;
@@ -150,6 +165,7 @@ impl Serialize for Comparison {
         document.serialize_field("complete", &self.is_complete())?;
         document.serialize_field("signs", self.score_tests())?;
         document.serialize_field("friction_change", &self.friction_change())?;
+        document.serialize_field("friction_bound", &self.friction_bound())?;
         document.serialize_field("p", self.p_values())?;
         document.serialize_field("scores", self.scores())?;
         document.serialize_field("models", self.identifications())?;

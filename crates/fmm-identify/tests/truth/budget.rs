@@ -1,11 +1,14 @@
 //! What makes a finding uncertain, against closed forms.
 
-use fmm_friction::Coulomb;
+use std::f64::consts::TAU;
+
+use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
     Candidate, Experiment, Finding, Identification, Inquiry, Known, Machine, Preparation, Source, Terms, compare,
     identify,
 };
 use fmm_record::{Quantity, Record};
+use fmm_sim::{Sampling, Scenario, simulate};
 use fmm_uq::{Budget, Contribution};
 
 use crate::records::{LOAD, RELEASES, machine, noisy, velocity};
@@ -70,6 +73,81 @@ fn a_coefficient_by_mass_load_and_gain() {
     }
     assert_eq!(part(mu, Source::Residuals).1, found.fit().degrees_of_freedom() as f64);
     assert_eq!(part(mu, Source::NormalLoad).1, f64::INFINITY);
+}
+
+/// A clock that is wrong by a thousandth moves each finding by its part of the clock, whatever the record is of; what is
+/// a ratio of two times stays.
+#[test]
+fn a_clock_moves_what_goes_with_time() {
+    const U: f64 = 1e-3;
+    let law = CoulombViscous::new(0.2, 0.05).unwrap();
+    let scenario = Scenario::new(machine(), law, LOAD).unwrap().starting_at(RELEASES[1], 0.0).unwrap();
+    let motion = simulate(&scenario, &Sampling::uniform(1e-3, SAMPLES).unwrap()).unwrap();
+    let by_mass = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
+    let by_stiffness = Machine::of_stiffness(Known::exact(1982.0).unwrap()).unwrap();
+    for (quantity, unit, values) in [
+        (Quantity::Displacement, "m", motion.position().values()),
+        (Quantity::Velocity, "m/s", motion.velocity().values()),
+    ] {
+        for machine in [by_mass, by_stiffness] {
+            let found = |interval: f64| {
+                let record = Record::new(0.0, interval, values.to_vec(), quantity, unit).unwrap();
+                let decay = Experiment::ring_down(&record, &Preparation::default().clock_uncertainty(U)).unwrap();
+                identify::<CoulombViscous>(&machine, &[decay]).unwrap()
+            };
+            let [right, slow] = [1e-3, 1e-3 * (1.0 + U)].map(found);
+            for name in [
+                "natural_frequency_hz",
+                "damping_per_mass",
+                "friction_per_mass",
+                "friction_force",
+                "damping",
+                "damping_ratio",
+                "quality_factor",
+                "logarithmic_decrement",
+                "time_constant",
+                "initial_position",
+            ] {
+                let [one, other] = [&right, &slow].map(|found| found.finding(name).unwrap());
+                let budget = one.budget();
+                let mut parts = budget.iter().flat_map(Budget::contributions);
+                let u = parts
+                    .find(|part| part.input.name() == Source::Clock.to_string())
+                    .map_or(0.0, |part| part.uncertainty);
+                let moved = (other.value() - one.value()).abs();
+                let off = (u - moved) / (U * one.value().abs());
+                assert!(off.abs() < 0.01, "{quantity} {name} = {}: {u}, moved by {moved}", one.value());
+            }
+        }
+    }
+}
+
+/// ζ = c/(2mω₀), Q = 1/(2ζ), δ = 2πζ/√(1 − ζ²) and τ = 2m/c beside the damping that makes them, with its uncertainty.
+#[test]
+fn damping_is_stated_in_four_more_ways() {
+    let values = velocity::<CoulombViscous>(machine(), &[0.2, 0.05], RELEASES[1], SAMPLES);
+    let found = identify::<CoulombViscous>(&Machine::per_unit_mass(), &[noisy(&values, 6)]).unwrap();
+    adds_up(&found);
+    let of = |name: &str| {
+        let finding = found.finding(name).unwrap();
+        (finding.value(), finding.uncertainty().unwrap())
+    };
+    let ((frequency, _), (damping, u)) = (of("natural_frequency_hz"), of("damping_per_mass"));
+    let ratio = damping / (2.0 * TAU * frequency);
+    let expected = [
+        ("damping_ratio", ratio),
+        ("quality_factor", 0.5 / ratio),
+        ("logarithmic_decrement", TAU * ratio / (1.0 - ratio * ratio).sqrt()),
+        ("time_constant", 2.0 / damping),
+    ];
+    for (name, value) in expected {
+        let (own, own_u) = of(name);
+        assert!((own / value - 1.0).abs() < 1e-12, "{name}: {own} instead of {value}");
+        // The frequency is known too well to matter.
+        assert!((own_u / own / (u / damping) - 1.0).abs() < 1e-3, "{name}: {own_u}");
+    }
+    let dry = identify::<Coulomb>(&Machine::per_unit_mass(), &[noisy(&motion(), 6)]).unwrap();
+    assert!(dry.finding("damping_ratio").is_none());
 }
 
 /// F = k f/ω²: of a known stiffness the noise comes in by the frequency as well.
