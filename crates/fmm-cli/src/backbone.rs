@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 
 use crate::figure::{Cells, Panel, Role, drawn, label};
 use crate::input::Given;
-use crate::output::{Output, pair, print};
+use crate::output::{Output, pair, print, while_busy};
 use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
-use fmm_model::Estimated;
+use fmm_model::{Damping, Dual, Estimated, Oscillator, Scalar};
 use fmm_record::{Record, Spectrum};
 use serde_json::{Value, json};
 
@@ -44,19 +44,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         options = options.over(cycles)?;
     }
     let modes = decay_modes(&record);
-    let backbone = Backbone::of(&record, &options)?;
+    let backbone = while_busy("backbone", || Backbone::of(&record, &options))??;
     let suggestion = backbone.suggestion();
+    let clock = arguments.given.choice.rate_u;
     let picture = || drawn(&panels(&record, &backbone, &suggestion));
     arguments.output.draw("backbone.svg", || Ok(vec![("backbone.svg", picture())]))?;
     let report = if arguments.output.json {
-        format!("{:#}", document(&decay, &modes, &backbone, &suggestion))
+        format!("{:#}", document(&decay, &modes, &backbone, &suggestion, clock))
     } else {
         let summary = decay.summary();
         let mut lines = vec![
             input.origin,
             format!("used from {:.4} s to {:.4} s; --from and --to say otherwise", summary.from, summary.to),
             String::new(),
-            text(&record, &modes, &backbone, &suggestion),
+            text(&record, &modes, &backbone, &suggestion, clock),
         ];
         let warnings = decay.warnings();
         if !warnings.is_empty() {
@@ -68,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     print(report)
 }
 
-fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion) -> String {
+fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion, clock: f64) -> String {
     let mut lines = vec!["Modes".to_owned(), "       Hz   amplitude   energy   above noise   c/m / (1/s)".to_owned()];
     for mode in modes {
         let multiple = mode.multiple.map_or_else(String::new, |multiple| format!("  {multiple} times a stronger one"));
@@ -90,10 +91,18 @@ fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &
     ));
     lines.push(format!("  {:>9}   {:<22}   {:<24}   c/m / (1/s)", "time / s", label("A", backbone.unit()), "f / Hz"));
     let points = backbone.points();
-    for point in points.iter().step_by(points.len().div_ceil(ROWS)) {
-        let BackbonePoint { time, amplitude, frequency, damping } = point;
-        let (amplitude, frequency) = (amplitude.to_string(), frequency.to_string());
+    let shown = || points.iter().step_by(points.len().div_ceil(ROWS));
+    for point in shown() {
+        let (time, amplitude) = (point.time, point.amplitude.to_string());
+        let (frequency, damping) = (clocked(point.frequency, clock).to_string(), clocked(point.damping, clock));
         lines.push(format!("  {time:9.4}   {amplitude:<22}   {frequency:<24}   {damping}"));
+    }
+    lines.push(String::new());
+    lines.push(format!("  {:>9}   {:<22}   {:<20}   {:<22}   τ / s", "time / s", "ζ", "Q", "δ"));
+    for point in shown() {
+        let [ratio, quality, decrement, time] =
+            stated(point, clock).map(|stated| stated.map_or_else(|| "-".to_owned(), |stated| stated.to_string()));
+        lines.push(format!("  {:9.4}   {ratio:<22}   {quality:<20}   {decrement:<22}   {time}", point.time));
     }
     lines.push(String::new());
     lines.push(format!("Suggested: {suggestion}"));
@@ -109,7 +118,36 @@ fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &
     lines.join("\n")
 }
 
-fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion) -> Value {
+/// A frequency or a rate with the relative uncertainty of the clock.
+fn clocked(value: Estimated, clock: f64) -> Estimated {
+    Estimated::new(value.value, value.uncertainty.hypot(clock * value.value))
+}
+
+/// ζ, Q, δ and τ of the equivalent damping at a point; none for damping that is not positive or is critical.
+fn stated(point: &BackbonePoint, clock: f64) -> [Option<Estimated>; 4] {
+    let (frequency, damping) = (point.frequency, point.damping);
+    let variable = |value: Estimated, direction| Dual::<2>::variable(value.value, direction);
+    let oscillator = Oscillator::per_unit_mass(variable(frequency, 0))
+        .and_then(|machine| Ok(machine.with_damping(Damping::new(variable(damping, 1), Dual::from(0.0))?)));
+    let Ok(oscillator) = oscillator else { return [None; 4] };
+    let [quality, decrement, time] =
+        [oscillator.quality_factor(), oscillator.logarithmic_decrement(), oscillator.time_constant()];
+    let ratio = quality.map(|_| oscillator.damping_ratio());
+    // A clock moves both together: ratios of them stay, a time goes with it.
+    [(ratio, 0.0), (quality, 0.0), (decrement, 0.0), (time, clock)].map(|(value, clock)| {
+        let value = value.filter(|value| value.value().is_finite())?;
+        let u = (value.partial(0) * frequency.uncertainty).hypot(value.partial(1) * damping.uncertainty);
+        Some(clocked(Estimated::new(value.value(), u), clock))
+    })
+}
+
+fn document(
+    decay: &Experiment,
+    modes: &[DecayMode],
+    backbone: &Backbone,
+    suggestion: &Suggestion,
+    clock: f64,
+) -> Value {
     let mode = |mode: &DecayMode| {
         json!({
             "frequency": mode.frequency,
@@ -122,11 +160,16 @@ fn document(decay: &Experiment, modes: &[DecayMode], backbone: &Backbone, sugges
         })
     };
     let point = |point: &BackbonePoint| {
+        let [ratio, quality, decrement, time] = stated(point, clock);
         json!({
             "time": point.time,
             "amplitude_u": pair(point.amplitude),
-            "frequency_u": pair(point.frequency),
-            "damping_u": pair(point.damping),
+            "frequency_u": pair(clocked(point.frequency, clock)),
+            "damping_u": pair(clocked(point.damping, clock)),
+            "damping_ratio_u": ratio.map(pair),
+            "quality_factor_u": quality.map(pair),
+            "logarithmic_decrement_u": decrement.map(pair),
+            "time_constant_u": time.map(pair),
         })
     };
     let damping: Vec<Value> = suggestion
@@ -208,23 +251,25 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
     ];
     // One mode alone has nothing to interact with.
     let own: Vec<DecayMode> = decay_modes(record).into_iter().filter(|mode| mode.multiple.is_none()).collect();
-    if let (true, Some(cells)) = (own.len() > 1, spectrogram(record, &own)) {
+    if let (true, Some((cells, range))) = (own.len() > 1, spectrogram(record, &own)) {
         let path = points.iter().map(|point| (point.time, point.frequency.value));
         let panel = Panel::new("time / s", "frequency / Hz", 340.0).over(cells);
-        panels.insert(2, panel.with(Role::Fitted, "frequency of the mode; the darker, the stronger", path));
+        let scale = format!("frequency of the mode; black is the strongest, white {range:.0} dB less or weaker");
+        panels.insert(2, panel.with(Role::Fitted, scale, path));
     }
     panels
 }
 
 /// Cells of a spectrogram along time and along frequency.
 const CELLS: (usize, usize) = (80, 48);
-/// Levels lower than this below the highest are white (dB).
+/// Levels lower than this below the highest are white (dB), and at least half of all.
 const RANGE: f64 = 60.0;
 /// Modes below this share of the largest amplitude do not widen a spectrogram (1).
 const SHOWN: f64 = 0.01;
 
-/// Levels over time and frequency, up to above the highest of these `modes`; `None` for a record that is too short.
-fn spectrogram(record: &Record, modes: &[DecayMode]) -> Option<Cells> {
+/// Levels over time and frequency, up to above the highest of these `modes`, and the range (dB) from white to black;
+/// `None` for a record that is too short.
+fn spectrogram(record: &Record, modes: &[DecayMode]) -> Option<(Cells, f64)> {
     let largest = modes.iter().map(|mode| mode.amplitude).fold(0.0, f64::max);
     let seen = modes.iter().filter(|mode| mode.amplitude > SHOWN * largest);
     let highest = (1.3 * seen.map(|mode| mode.frequency).fold(0.0, f64::max)).min(0.5 * record.rate());
@@ -245,9 +290,13 @@ fn spectrogram(record: &Record, modes: &[DecayMode]) -> Option<Cells> {
         columns.push((0..CELLS.1).map(level).collect());
     }
     let top = columns.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-    let row = |cell: usize| columns.iter().map(|column| column[cell].max(top - RANGE)).collect();
+    let mut levels: Vec<f64> = columns.iter().flatten().copied().collect();
+    levels.sort_by(f64::total_cmp);
+    // The noise of the record is most of the plane, and is not shown.
+    let range = (top - levels.get(levels.len() / 2)?).clamp(1.0, RANGE);
+    let row = |cell: usize| columns.iter().map(|column| column[cell].max(top - range)).collect();
     let rows: Vec<Vec<f64>> = (0..CELLS.1).map(row).collect();
     let half = 0.5 * window as f64 * record.interval();
     let ends = (record.start() + half, record.end() - half);
-    (!columns.is_empty() && ends.0 < ends.1).then_some(Cells { rows, x: ends, y: (0.0, highest) })
+    (ends.0 < ends.1).then_some((Cells { rows, x: ends, y: (0.0, highest) }, range))
 }

@@ -14,7 +14,7 @@ use crate::{backbone, batch, budget, design, force, frf, identify, lists, simula
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
 #[derive(Debug, Parser)]
-#[command(name = "fmm", version, after_help = AFTER_HELP)]
+#[command(name = "fmm", version, after_help = AFTER_HELP, max_term_width = 120)]
 struct Program {
     #[command(subcommand)]
     command: Command,
@@ -135,6 +135,24 @@ mod tests {
     #[test]
     fn the_commands_are_consistent() {
         Program::command().debug_assert();
+    }
+
+    #[test]
+    fn what_is_mistyped_gets_the_nearest_name() {
+        let told = |arguments: &[&str]| Program::try_parse_from(arguments).unwrap_err().to_string();
+        let option = told(&["fmm", "identify", "--chanel", "x"]);
+        assert!(option.contains("a similar argument exists: '--channel'"), "{option}");
+        let command = told(&["fmm", "identfy"]);
+        assert!(command.contains("a similar subcommand exists: 'identify'"), "{command}");
+    }
+
+    #[test]
+    fn help_is_wrapped() {
+        for command in Program::command().get_subcommands_mut() {
+            let help = command.clone().max_term_width(120).render_long_help().to_string();
+            let longest = help.lines().max_by_key(|line| line.chars().count()).unwrap_or_default();
+            assert!(longest.chars().count() <= 120, "{}: {longest}", command.get_name());
+        }
     }
 
     #[test]

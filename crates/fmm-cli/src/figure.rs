@@ -120,6 +120,8 @@ pub struct Panel {
     x_label: String,
     y_label: String,
     height: f64,
+    /// Ends of the y axis, if it does not follow what is drawn.
+    ends: Option<(f64, f64)>,
     cells: Option<Cells>,
     layers: Vec<Layer>,
 }
@@ -127,7 +129,14 @@ pub struct Panel {
 impl Panel {
     /// Empty axes, `height` pixels high.
     pub fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
-        Self { x_label: x_label.into(), y_label: y_label.into(), height, cells: None, layers: Vec::new() }
+        Self { x_label: x_label.into(), y_label: y_label.into(), height, ends: None, cells: None, layers: Vec::new() }
+    }
+
+    /// The same axes with the y axis from `low` to `high`.
+    #[must_use]
+    pub fn between(mut self, low: f64, high: f64) -> Self {
+        self.ends = Some((low, high));
+        self
     }
 
     /// The same axes with a curve or single points on top. The legend has each text once, and no empty one.
@@ -169,6 +178,14 @@ impl Panel {
         let (x_low, x_high) = range(all().map(|point| point.0));
         let (y_low, y_high) = range(all().map(|point| point.1));
         let (width, height) = (x_high - x_low, y_high - y_low);
+        if let Some((low, high)) = self.ends {
+            let x = (&*self.x_label, (x_low - 0.015 * width, x_high + 0.015 * width));
+            return framed(&self.plots(), x, (&self.y_label, (low, high)))
+                .with_x_tick_step(step(width, steps))
+                .with_x_tick_format(ticks(width))
+                .with_y_tick_step((high - low) / 4.0)
+                .with_y_tick_format(ticks(high - low));
+        }
         framed(
             &self.plots(),
             (&self.x_label, (x_low - 0.015 * width, x_high + 0.015 * width)),

@@ -12,7 +12,7 @@ use std::time::Instant;
 use crate::figure::{drawn, histogram, label};
 use crate::files;
 use crate::input::{Choice, DRIVE, Given, Question};
-use crate::output::{Output, print, print_json, spinner};
+use crate::output::{Output, print, print_json, spinner, while_busy};
 use crate::posterior::Posterior;
 use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
@@ -161,10 +161,16 @@ fn give_out(
     }
     if let Some(path) = &arguments.report {
         files::require_writable(path)?;
+        let is_page =
+            path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|page| ending.eq_ignore_ascii_case(page)));
+        if !is_page {
+            let path = path.display();
+            return Err(format!("--report writes a page of HTML, but {path} is called otherwise; give a name that ends in .html, which a browser prints as PDF").into());
+        }
     }
     let begun = Instant::now();
     let mut found = found(arguments, candidates)?;
-    found.curve = with_curve.then(|| {
+    let curve = || {
         if arguments.question.is_over(begun) {
             return Curve::Missing { missing: "the time limit is over".to_owned() };
         }
@@ -172,8 +178,10 @@ fn give_out(
             Ok(curve) => Curve::Found(Box::new(curve)),
             Err(error) => Curve::Missing { missing: error.to_string() },
         }
-    });
-    let posterior = arguments.posterior.then(|| Posterior::of(found.comparison.preferred(), &found.decay)).transpose();
+    };
+    found.curve = if with_curve { Some(while_busy("friction over speed", curve)?) } else { None };
+    let posterior = || Posterior::of(found.comparison.preferred(), &found.decay);
+    let posterior = if arguments.posterior { while_busy("posterior", posterior)?.map(Some) } else { Ok(None) };
     // What was found is given out without one as well.
     let failed = match posterior {
         Ok(posterior) => {
@@ -206,7 +214,8 @@ fn give_out(
         || pictures(&found),
     )?;
     if let Some(path) = &arguments.report {
-        let page = report::document(&found, arguments.given.bytes()?.as_ref(), command)?;
+        let bytes = arguments.given.bytes()?;
+        let page = while_busy("report", || report::document(&found, &bytes, command))??;
         std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
         eprintln!("report: {}", path.display());
     }

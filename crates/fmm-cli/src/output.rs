@@ -66,6 +66,15 @@ pub(crate) fn print_json(document: &impl Serialize) -> Result<(), Box<dyn Error>
     print(serde_json::to_string_pretty(document)?)
 }
 
+/// Result of `work` of unknown length, while a line on standard error says `what` it is.
+pub(crate) fn while_busy<T>(what: &str, work: impl FnOnce() -> T) -> Result<T, Box<dyn Error>> {
+    let bar = spinner()?;
+    bar.set_message(format!("{what} …"));
+    let done = work();
+    bar.finish_and_clear();
+    Ok(done)
+}
+
 /// A line on standard error that turns while work of unknown length is done.
 pub(crate) fn spinner() -> Result<ProgressBar, Box<dyn Error>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);

@@ -17,7 +17,7 @@ use fmm_uq::{
 use serde::Serialize;
 
 use crate::files;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, while_busy};
 use file::{Correlation, Measurement};
 
 /// States the uncertainty of a result.
@@ -70,7 +70,8 @@ struct Answers {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let measurement = files::document(&arguments.file, Measurement::of)?;
-    let answers = answers(&measurement, arguments.level, (arguments.trials, arguments.seed))?;
+    let trials = (arguments.trials, arguments.seed);
+    let answers = while_busy("trials", || answers(&measurement, arguments.level, trials))??;
     if arguments.json { print_json(&answers) } else { print(text(&answers).trim_end()) }
 }
 
@@ -125,13 +126,23 @@ fn text(answers: &Answers) -> String {
     for answer in &answers.results {
         let varies = answer.interval.low < answer.interval.high;
         let verdict = match (answer.validated_digits, &answer.statement) {
+            _ if !varies && answer.budget.standard_uncertainty() > 0.0 => {
+                "the trials do not vary although u is not zero: the digits in which they differ are lost beside larger numbers, and \
+                 nothing confirms the interval above; write the formula so that the large numbers cancel first"
+            }
             _ if !varies => "the trials do not vary: the result does not depend on what is uncertain",
             (DIGITS.., _) => "the trials confirm the interval above to two digits of u",
             (1, _) => "the trials confirm the interval above to one digit of u; to two, state theirs",
             (0, Some(_)) => "the trials do not confirm the interval above; state theirs",
             (0, None) => "there is no interval above; state that of the trials",
         };
-        let _ = writeln!(text, "{} = {}\n\n{}", answer.budget.name(), answer.formula, answer.budget);
+        let _ = writeln!(
+            text,
+            "{} = {}\n\n{}",
+            answer.budget.name(),
+            answer.formula,
+            answer.budget.at_level(answer.interval.level)
+        );
         let trials = answer.trials.as_ref().map_or_else(|| interval(answer), ToString::to_string);
         let _ = writeln!(text, "by trials:\n{trials}\n{verdict}\n");
     }
@@ -208,6 +219,8 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
         assert_eq!(statement.expanded_uncertainty.round(), 93.0);
         assert_eq!(statement.effective_degrees_of_freedom.map(f64::floor), Some(16.0));
         let text = text(&answers);
+        // The level that was asked for, as in the example, and no other.
+        assert!(text.contains("U = 93 nm (k = 2.92, 99 %, ν_eff = 16.7)") && !text.contains("95 %"), "{text}");
         // JCGM 101:2008, 9.5: with a δθ of so few degrees of freedom the result has no standard deviation.
         assert!(answer.trials.is_none() && text.contains("δθ has, has no standard deviation"), "{text}");
         assert!(text.contains("length = l_s + d - l_s*(δα*θ + α_s*δθ)") && text.contains("by trials:"), "{text}");
@@ -305,7 +318,10 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
             let file = format!("{input}[[result]]\nname = \"y\"\nunit = \"m\"\nformula = \"{formula}\"\n");
             text(&answers(&Measurement::of_toml(&file).unwrap(), 0.95, (10_000, 1)).unwrap())
         };
-        assert!(told("b - b").contains("the trials do not vary"));
+        assert!(told("b - b").contains("the trials do not vary: the result does not depend on what is uncertain"));
+        // 0.1 m is lost beside 1e20 m.
+        let lost = told("b + 1e20 - 1e20");
+        assert!(lost.contains("digits in which they differ are lost") && !lost.contains("does not depend"), "{lost}");
         // Flat where it is linearised: the derivatives see nothing.
         assert!(told("(b - 2)^2").contains("there is no interval above"));
     }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
 use crate::input::Held;
-use crate::output::{Output, pair, print, print_json};
+use crate::output::{Output, pair, print, print_json, while_busy};
 use clap::Args;
 use fmm_identify::{Candidate, ForceLoop, ForceRecord, Identification, Machine, Onset, SpeedBin, Validation, compare};
 use serde_json::{Value, json};
@@ -74,7 +74,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
         described.push(model);
     }
-    let compared = compare(&Machine::per_unit_mass(), &records, &described)?;
+    let what = format!("fitting {}", models.join(", "));
+    let compared = while_busy(&what, || compare(&Machine::per_unit_mass(), &records, &described))??;
     let found = compared.identifications();
     let picture = |(found, number): (&Identification, usize)| {
         Ok((format!("force_{number}.svg"), drawn(&panels(&records[0], found)?)))
@@ -89,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
             "models": models,
             "preferred": compared.preferred().law(),
-            "is_decided": compared.is_decided(),
+            "is_decided": compared.is_conclusive(),
         });
         return print_json(&document);
     }
@@ -201,6 +202,7 @@ fn document(found: &Identification, files: &[PathBuf], others: &[ForceRecord]) -
                 "value": finding.value(),
                 "u": finding.uncertainty(),
                 "interval_95": finding.interval(0.95).map(|(low, high)| [low, high]),
+                "no_interval": finding.without_interval(),
             })
         })
         .collect();

@@ -42,13 +42,34 @@ fn curves(panel: Panel, shown: &FrequencyResponse, analysis: &Analysis, part: im
     let lines = shown.frequencies().iter().zip(shown.values());
     let measured = lines.map(|(frequency, value)| (*frequency, part(*value)));
     let mut panel = panel.with(Role::Measured, "H1", measured);
-    for peak in &analysis.peaks {
-        let Some(fit) = &peak.fit else { continue };
-        let frequency = |i: u32| peak.band.0 + (peak.band.1 - peak.band.0) * f64::from(i) / 200.0;
-        let fitted = (0..=200).map(|i| (frequency(i), part(fit.value(frequency(i)))));
+    for fitted in of_modes(analysis, part) {
         panel = panel.with(Role::Fitted, "fitted modes", fitted);
     }
     panel
+}
+
+/// The fitted modes where they were fitted.
+fn of_modes(analysis: &Analysis, part: impl Fn(Complex64) -> f64) -> Vec<Vec<(f64, f64)>> {
+    let mut curves = Vec::new();
+    for peak in &analysis.peaks {
+        let Some(fit) = &peak.fit else { continue };
+        let frequency = |i: u32| peak.band.0 + (peak.band.1 - peak.band.0) * f64::from(i) / 200.0;
+        curves.push((0..=200).map(|i| (frequency(i), part(fit.value(frequency(i))))).collect());
+    }
+    curves
+}
+
+/// Phases between −180° and 180°: points, and curves that end where they would leap from one end to the other.
+fn phases(shown: &FrequencyResponse, analysis: &Analysis) -> Panel {
+    let degrees = |value: Complex64| value.arg().to_degrees();
+    let measured =
+        shown.frequencies().iter().zip(shown.values()).map(|(frequency, value)| (*frequency, degrees(*value)));
+    // The colours are those of the magnitude above.
+    let panel = Panel::new("", "phase / °", 220.0).between(-180.0, 180.0).with(Role::Points, "", measured);
+    of_modes(analysis, degrees).into_iter().fold(panel, |panel, curve| {
+        let pieces = curve.chunk_by(|one, next| (one.1 - next.1).abs() < 180.0);
+        pieces.fold(panel, |panel, piece| panel.with(Role::Fitted, "", piece.iter().copied()))
+    })
 }
 
 fn complex_panels(shown: &FrequencyResponse, analysis: &Analysis) -> Vec<Panel> {
@@ -62,8 +83,6 @@ fn complex_panels(shown: &FrequencyResponse, analysis: &Analysis) -> Vec<Panel> 
 
 fn magnitude_panels(shown: &FrequencyResponse, analysis: &Analysis) -> Vec<Panel> {
     let decibels = |value: Complex64| 20.0 * value.norm().max(f64::MIN_POSITIVE).log10();
-    // Cut at −90°, as a phase between resonances is 0° or 180° and noise must not make it jump.
-    let degrees = |value: Complex64| (value.arg().to_degrees() + 90.0).rem_euclid(360.0) - 90.0;
     let level = format!("|{}| / (dB re 1 {})", shown.form(), shown.form().unit());
     let coherence = analysis.coherence.frequencies().iter().zip(analysis.coherence.values());
     let last = shown.frequencies().last().copied().unwrap_or(0.0);
@@ -72,7 +91,7 @@ fn magnitude_panels(shown: &FrequencyResponse, analysis: &Analysis) -> Vec<Panel
     let points = inside.map(|(frequency, value)| (*frequency, *value));
     vec![
         curves(Panel::new("", level, 340.0), shown, analysis, decibels),
-        curves(Panel::new("", "phase / °", 220.0), shown, analysis, degrees),
+        phases(shown, analysis),
         Panel::new("frequency / Hz", "coherence γ²", 250.0).with(Role::Residual, averages, points),
     ]
 }

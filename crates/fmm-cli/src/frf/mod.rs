@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use crate::files::named;
-use crate::output::{Output, print};
+use crate::output::{Output, print, while_busy};
 use analysis::{Analysis, Window};
 use clap::Args;
 use fmm_frf::{FrequencyResponse, RationalFit, ResponseForm};
@@ -139,7 +139,10 @@ fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let read = |path: &PathBuf| arguments.channels.read(path).map_err(named(path));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
-    let analysis = Analysis::of(&trials, form(&trials)?, arguments.window, arguments.exponential_end)?;
+    let form = form(&trials)?;
+    let analysis = while_busy("averaging and fitting modes", || {
+        Analysis::of(&trials, form, arguments.window, arguments.exponential_end)
+    })??;
     let text =
         if arguments.output.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
     print(text.trim_end())?;

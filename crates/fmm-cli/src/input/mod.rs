@@ -78,7 +78,7 @@ impl Given {
     /// The preparation of the part that is used.
     pub(crate) fn preparation(&self) -> Preparation {
         let from = self.choice.from.map_or_else(Preparation::default, |from| Preparation::default().from(from));
-        self.choice.to.map_or(from, |to| from.to(to))
+        self.choice.to.map_or(from, |to| from.to(to)).clock_uncertainty(self.choice.rate_u)
     }
 
     /// The bytes of the file.

@@ -69,6 +69,9 @@ pub(crate) struct Choice {
     /// The sampling rate, if there is no time channel
     #[arg(long, value_name = "HZ")]
     pub(crate) rate: Option<f64>,
+    /// Relative standard uncertainty of the sampling rate, or of the clock behind the times
+    #[arg(long, value_name = "RELATIVE", default_value_t = 0.0)]
+    pub(crate) rate_u: f64,
     /// Unit of the times, such as ms, if their name does not tell it or tells another
     #[arg(long, value_name = "UNIT", conflicts_with = "rate")]
     pub(crate) time_unit: Option<String>,

@@ -13,7 +13,7 @@ use clap::Args;
 
 use crate::figure::{ends, label};
 use crate::files;
-use crate::output::{Output, print};
+use crate::output::{Output, print, while_busy};
 use crate::scenario::{Motion, Simulation};
 
 /// Simulates a machine with a sliding contact.
@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = &arguments.scenario;
     let scenario = Simulation::read(&files::text(path)?).map_err(files::named(path))?;
-    let motion = scenario.run().map_err(files::named(path))?;
+    let motion = while_busy("simulating", || scenario.run())?.map_err(files::named(path))?;
     arguments.output.draw("{motion,friction}.svg", || figures::pictures(&scenario, &motion))?;
     if arguments.output.json {
         print(serde_json::to_string(&motion)?)
