@@ -233,7 +233,7 @@ fn intervals_of_campaigns_hold() {
         let done = program()
             .args(["batch", "--manifest"])
             .arg(home.join("runs.csv"))
-            .args(["--json", "--", "--rate", "100"])
+            .args(["--json", "--count-doubtful", "--", "--rate", "100"])
             .output()
             .unwrap();
         let document: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();

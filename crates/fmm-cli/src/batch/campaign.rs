@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, Parser};
 use fmm_identify::Experiment;
 use serde::{Deserialize, Serialize};
 
-use super::manifest::{FILE, Manifest};
+use super::manifest::{EXCLUDE, FILE, Manifest, exclusion, listed};
 use super::sheet::Sheet;
 use crate::files::{self, create_folder, named};
 use crate::input::{DRIVES, Given, Input, Question};
@@ -28,11 +29,15 @@ pub(crate) struct Campaign {
 /// One record of a campaign.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Entry {
+    #[serde(with = "files::exact")]
     pub(crate) file: PathBuf,
     /// Options of `fmm identify` for it alone.
     pub(crate) options: Vec<String>,
     /// Description by column.
     pub(crate) description: BTreeMap<String, String>,
+    /// Why the manifest leaves it out, empty where it gives no reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) excluded: Option<String>,
 }
 
 /// Name of the list in the folder of a campaign.
@@ -76,7 +81,9 @@ impl Campaign {
         let command = RecordOptions::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
-        for column in manifest.columns.iter().filter(|column| *column != FILE && !is_option(column)) {
+        for column in
+            manifest.columns.iter().filter(|column| ![FILE, EXCLUDE].contains(&column.as_str()) && !is_option(column))
+        {
             refuse_drive(column).and_then(|()| refuse_misspelt(column, &command)).map_err(named(path))?;
         }
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
@@ -86,6 +93,9 @@ impl Campaign {
                 if column == FILE {
                     entry.file = folder.join(cell);
                     continue;
+                }
+                if column == EXCLUDE {
+                    entry.excluded = exclusion(cell);
                 }
                 if is_option(column) && !cell.is_empty() {
                     entry.options.push(format!("--{}={cell}", column.replace('_', "-")));
@@ -115,7 +125,7 @@ impl Campaign {
             return Ok(());
         }
         let known: Vec<&str> = std::iter::once(FILE).chain(columns).collect();
-        Err(format!("there is no column `{column}`; there are {}", known.join(", ")))
+        Err(format!("there is no column `{column}`; there are {}", listed(&known)))
     }
 
     /// Columns that describe the records.
@@ -165,9 +175,13 @@ pub(crate) struct RecordOptions {
 impl RecordOptions {
     /// Parses the `options` of the record in a `file`.
     pub(super) fn of(options: impl Iterator<Item = String>, file: &Path) -> Result<Self, Box<dyn Error>> {
-        let arguments = options.chain(["--".to_owned(), file.display().to_string()]);
+        let arguments = options.map(OsString::from).chain([OsString::from("--"), file.into()]);
         Ok(Self::try_parse_from(arguments).map_err(|error| {
-            error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
+            // What is wrong, and what may be meant; the usage of no command would mislead.
+            let text = error.to_string();
+            let lines = text.lines().map(str::trim).enumerate();
+            let told = lines.filter(|(number, line)| *number == 0 || line.starts_with("tip: ")).map(|(_, line)| line);
+            told.collect::<Vec<_>>().join("; ").trim_start_matches("error: ").to_owned()
         })?)
     }
 
@@ -193,7 +207,7 @@ fn refuse_drive(column: &str) -> Result<(), String> {
 /// Refuses a column that is meant for one of the options of `command`, or for the file, but not called like it.
 fn refuse_misspelt(column: &str, command: &clap::Command) -> Result<(), String> {
     let options = command.get_arguments().filter_map(|option| Some(option.get_long()?.replace('-', "_")));
-    let known: Vec<String> = std::iter::once(FILE.to_owned()).chain(options).collect();
+    let known: Vec<String> = [FILE, EXCLUDE].map(str::to_owned).into_iter().chain(options).collect();
     let Some(meant) = known.iter().find(|option| is_meant(column, option)) else { return Ok(()) };
     Err(format!(
         "column `{column}` is no option and nearly called like `{meant}`; call it so, or otherwise if it only describes the records; \
@@ -261,10 +275,11 @@ mod tests {
             ("chanel", "channel"),
             ("chanmel", "channel"),
             ("stiffnes", "stiffness"),
+            ("exlude", "exclude"),
         ] {
             let refused = refuse_misspelt(column, &command).unwrap_err();
             assert!(refused.contains(&format!("nearly called like `{meant}`")), "{column}: {refused}");
-            assert!(refused.contains("columns that set something are file, channel, time, rate"), "{refused}");
+            assert!(refused.contains("columns that set something are file, exclude, channel, time, rate"), "{refused}");
         }
         for column in [
             "operator",

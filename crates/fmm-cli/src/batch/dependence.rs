@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::row::{Row, Told, in_unit, quantities};
 use crate::figure::ends;
+use crate::report::of_size;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -71,7 +72,7 @@ pub(super) fn number_in(row: &Row, column: &str) -> Option<f64> {
 }
 
 /// All dependences that the records can show, and those on `columns`.
-pub(super) fn dependences(rows: &[Row], columns: &[String]) -> Vec<Dependence> {
+pub(super) fn dependences(rows: &[&Row], columns: &[String]) -> Vec<Dependence> {
     let load = over_load(rows);
     let amplitude = over_amplitude(rows);
     let columns = columns.iter().map(|column| {
@@ -86,7 +87,7 @@ pub(super) fn dependences(rows: &[Row], columns: &[String]) -> Vec<Dependence> {
 }
 
 /// The first quantity of `rows` whose name ends so.
-fn quantity<'a>(rows: &'a [Row], ending: &str) -> Option<(&'a str, &'a str)> {
+fn quantity<'a>(rows: &[&'a Row], ending: &str) -> Option<(&'a str, &'a str)> {
     quantities(rows).into_iter().find(|(name, _)| name.ends_with(ending))
 }
 
@@ -96,9 +97,9 @@ fn estimated(told: &Told) -> Option<Estimated> {
 }
 
 /// Friction force against the load, where records state different ones.
-fn over_load(rows: &[Row]) -> Option<Dependence> {
+fn over_load(rows: &[&Row]) -> Option<Dependence> {
     let quantity = quantity(rows, "friction_force")?;
-    let run = |row: &Row| {
+    let run = |row: &&Row| {
         let load = Estimated::new(number_in(row, LOAD)?, number_in(row, "normal_load_u").unwrap_or(0.0));
         Some((load, estimated(row.told(quantity)?)?))
     };
@@ -151,8 +152,8 @@ fn band((low, high): (f64, f64), at: impl Fn(f64) -> (f64, Option<Ends>)) -> Vec
 }
 
 /// Friction against the amplitude of the release, where amplitudes of one unit differ by enough.
-fn over_amplitude(rows: &[Row]) -> Option<Dependence> {
-    let found = || rows.iter().filter_map(Row::found);
+fn over_amplitude(rows: &[&Row]) -> Option<Dependence> {
+    let found = || rows.iter().filter_map(|row| row.found());
     let unit = &found().next()?.unit;
     let (low, high) = ends(found().map(|found| found.amplitude));
     if high < WIDE * low || found().any(|found| found.unit != *unit) {
@@ -175,9 +176,9 @@ impl Dependence {
     }
 
     /// The measure of friction that tells most against what is at a `place` in each record.
-    fn by_line(rows: &[Row], against: &str, against_unit: &str, place: impl Fn(&Row) -> Option<f64>) -> Option<Self> {
+    fn by_line(rows: &[&Row], against: &str, against_unit: &str, place: impl Fn(&Row) -> Option<f64>) -> Option<Self> {
         let (name, unit) = FRICTION.iter().find_map(|ending| quantity(rows, ending))?;
-        let point = |row: &Row| {
+        let point = |row: &&Row| {
             let friction = estimated(row.told((name, unit))?)?;
             Some((place(row)?, friction.value, friction.uncertainty))
         };
@@ -205,7 +206,7 @@ impl Dependence {
                     in_unit(slope, unit),
                     line.p,
                     points.len(),
-                    in_unit(format_args!("{:.2e}", line.between), unit),
+                    in_unit(of_size(line.between), unit),
                 );
                 (Some(line), statement)
             }

@@ -9,7 +9,7 @@ use fmm_identify::Experiment;
 use serde::Serialize;
 
 use super::campaign::Campaign;
-use super::row::{Row, Told, told};
+use super::row::{Found, Row, Told, told};
 use crate::input::Question;
 
 /// The usual law with its viscous part as damping of the machine.
@@ -29,15 +29,17 @@ pub(crate) struct Together {
 }
 
 impl Together {
-    /// Fits all records that were identified; `show` sees each trial step.
+    /// Fits all records that count; `show` sees each trial step.
     pub(crate) fn of(
         campaign: &Campaign,
         rows: &[Row],
+        with_doubtful: bool,
         show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Self, Box<dyn Error>> {
-        let law = one_law(rows)?;
+        let counted = || (0..rows.len()).filter(|index| rows[*index].counts(with_doubtful));
+        let law = one_law(counted().filter_map(|index| rows[index].found()))?;
         let (mut questions, mut experiments) = (Vec::new(), Vec::new());
-        for index in (0..rows.len()).filter(|index| rows[*index].found().is_some()) {
+        for index in counted() {
             let record = campaign.record(index)?;
             let (_, experiment) = record.prepared()?;
             questions.push((record.question, rows[index].file.display().to_string()));
@@ -66,9 +68,9 @@ impl Together {
 }
 
 /// The law of all records.
-fn one_law(rows: &[Row]) -> Result<&str, String> {
+fn one_law<'a>(counted: impl Iterator<Item = &'a Found>) -> Result<&'a str, String> {
     let mut laws: Vec<(&str, usize)> = Vec::new();
-    for found in rows.iter().filter_map(Row::found) {
+    for found in counted {
         match laws.iter_mut().find(|(law, _)| *law == found.law) {
             Some((_, count)) => *count += 1,
             None => laws.push((&found.law, 1)),
@@ -76,7 +78,7 @@ fn one_law(rows: &[Row]) -> Result<&str, String> {
     }
     match laws.as_slice() {
         [(law, count)] if *count > 1 => Ok(law),
-        [] | [_] => Err("a joint fit needs two identified records or more".to_owned()),
+        [] | [_] => Err("a joint fit needs two identified records or more that count".to_owned()),
         several => {
             let several: Vec<String> = several.iter().map(|(law, count)| format!("{law} ({count})")).collect();
             Err(format!(

@@ -23,6 +23,27 @@ pub(super) struct Manifest {
 /// The column with the path of the record.
 pub(super) const FILE: &str = "file";
 
+/// Names for an error, the first of many.
+pub(super) fn listed(names: &[impl AsRef<str>]) -> String {
+    /// A screen of them, by judgement.
+    const MOST: usize = 20;
+    let first: Vec<&str> = names.iter().take(MOST).map(AsRef::as_ref).collect();
+    let others = names.len().saturating_sub(MOST);
+    if others > 0 { format!("{} and {others} more", first.join(", ")) } else { first.join(", ") }
+}
+
+/// The column that leaves a record out.
+pub(super) const EXCLUDE: &str = "exclude";
+
+/// Reason for which a cell of the column leaves its record out, empty where it is `true` alone; `None` where it does not.
+pub(super) fn exclusion(cell: &str) -> Option<String> {
+    match cell.to_lowercase().as_str() {
+        "" | "false" | "no" | "0" => None,
+        "true" | "yes" | "1" | "x" => Some(String::new()),
+        _ => Some(cell.to_owned()),
+    }
+}
+
 impl Manifest {
     /// Reads TOML if the name or the beginning of the file looks so, and CSV otherwise.
     pub(super) fn read(path: &Path) -> Result<Self, String> {
@@ -58,7 +79,7 @@ impl Manifest {
         let columns: Vec<String> =
             reader.headers().map_err(|error| error.to_string())?.iter().map(str::to_owned).collect();
         if !columns.iter().any(|column| column == FILE) {
-            return Err(format!("there is no column `{FILE}`; there are {}", columns.join(", ")));
+            return Err(format!("there is no column `{FILE}`; there are {}", listed(&columns)));
         }
         let line = |line: Result<csv::StringRecord, csv::Error>| {
             line.map(|line| line.iter().map(|cell| with_point(cell, delimiter)).collect())

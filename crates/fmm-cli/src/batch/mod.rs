@@ -39,8 +39,8 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "manifest")]
     records: Vec<PathBuf>,
     /// A table (CSV) or a list (TOML) of records, each with its `file`, relative to the manifest; columns called like
-    /// an option of `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, others (operator,
-    /// specimen, …) describe it, but one that is nearly called like an option is refused, and so are `force`,
+    /// an option of `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, `exclude` leaves it out
+    /// (true, or the reason), others (operator, specimen, …) describe it, but one that is nearly called like an option is refused, and so are `force`,
     /// `base` and `impact`, as all records are of free vibrations. In TOML, [[record]] begins a record, [common] holds
     /// what all share, `group` names a column for --group, and [sheet] holds the fields of a record sheet
     #[arg(long, value_name = "FILE", conflicts_with = "records")]
@@ -90,6 +90,9 @@ struct Asked {
     /// number (thirty of 800 samples take 7 s)
     #[arg(long)]
     joint: bool,
+    /// Count records whose fit is doubted by warnings; they are set apart with the reason otherwise
+    #[arg(long)]
+    count_doubtful: bool,
     /// A column of numbers of the manifest against which friction is set, beside load and amplitude; may be given again
     #[arg(long, value_name = "COLUMN")]
     against: Vec<String>,
@@ -102,19 +105,26 @@ impl Asked {
     }
 
     fn summary(&self, campaign: &Campaign, rows: &[Row]) -> Result<Summary, Box<dyn Error>> {
-        let joint = if self.joint { Some(joint(campaign, rows)?) } else { None };
-        Ok(Summary::of(campaign, rows, &self.against, joint))
+        let alone = Summary::of(campaign, rows, self, None);
+        if !self.joint {
+            return Ok(alone);
+        }
+        let joint = match alone.against_joint() {
+            Some(why) => Outcome::Refused(why),
+            None => joint(campaign, rows, self)?,
+        };
+        Ok(Summary::of(campaign, rows, self, Some(joint)))
     }
 }
 
 /// Fits all records together while a line on standard error shows how far that is.
-fn joint(campaign: &Campaign, rows: &[Row]) -> Result<Outcome<Together>, Box<dyn Error>> {
+fn joint(campaign: &Campaign, rows: &[Row], asked: &Asked) -> Result<Outcome<Together>, Box<dyn Error>> {
     let bar = spinner()?;
     let show = |law: &str, progress: &Progress<'_>| {
         bar.set_message(format!("joint fit by {law}: step {}", progress.iterations()));
         ControlFlow::Continue(())
     };
-    let joint = Together::of(campaign, rows, show);
+    let joint = Together::of(campaign, rows, asked.count_doubtful, show);
     bar.finish_and_clear();
     Ok(joint.into())
 }

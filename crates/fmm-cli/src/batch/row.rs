@@ -19,9 +19,13 @@ use crate::files;
 /// Result of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Row {
+    #[serde(serialize_with = "files::shown")]
     pub(crate) file: PathBuf,
     /// Description by column of the manifest.
     pub(crate) description: BTreeMap<String, String>,
+    /// True for a record that the manifest leaves out.
+    #[serde(default)]
+    pub(crate) is_excluded: bool,
     #[serde(flatten)]
     pub(crate) outcome: Outcome<Found>,
 }
@@ -58,6 +62,8 @@ pub(crate) struct Found {
     pub(crate) law: String,
     pub(crate) is_decided: bool,
     pub(crate) findings: Vec<Told>,
+    /// Mass, stiffness, damping and load as they were declared, with their standard uncertainties.
+    pub(crate) declared: BTreeMap<String, (f64, f64)>,
     /// Declared inputs with an uncertainty.
     pub(crate) stated: Vec<Stated>,
     pub(crate) rms_residual: f64,
@@ -65,6 +71,8 @@ pub(crate) struct Found {
     /// Largest amplitude, in the unit of the record.
     pub(crate) amplitude: f64,
     pub(crate) half_swings: usize,
+    pub(crate) rate_hz: f64,
+    pub(crate) duration_s: f64,
     pub(crate) warnings: Vec<String>,
     /// Those of the warnings that doubt the fit.
     pub(crate) doubts: Vec<String>,
@@ -108,8 +116,19 @@ impl Row {
     /// Identifies the record of this index.
     pub(crate) fn of(campaign: &Campaign, index: usize) -> Self {
         let entry = &campaign.entries[index];
-        let outcome = campaign.record(index).and_then(|record| found(&record)).into();
-        Self { file: entry.file.clone(), description: entry.description.clone(), outcome }
+        let outcome = match &entry.excluded {
+            None => campaign.record(index).and_then(|record| found(&record)).into(),
+            Some(reason) if reason.is_empty() => Outcome::Refused("left out by the manifest".to_owned()),
+            Some(reason) => Outcome::Refused(format!("left out by the manifest: {reason}")),
+        };
+        let is_excluded = entry.excluded.is_some();
+        Self { file: entry.file.clone(), description: entry.description.clone(), is_excluded, outcome }
+    }
+
+    /// True if it counts in what the records say together: it was identified, and no warning doubts its fit, unless
+    /// such records are asked for as well.
+    pub(crate) fn counts(&self, with_doubtful: bool) -> bool {
+        self.found().is_some_and(|found| with_doubtful || found.doubts.is_empty())
     }
 
     /// Findings of the record, unless it was refused.
@@ -159,9 +178,9 @@ pub(super) fn in_unit(value: impl Display, unit: &str) -> String {
 }
 
 /// Names and units of all quantities of `rows`, in the order in which they first appear.
-pub(crate) fn quantities(rows: &[Row]) -> Vec<(&str, &str)> {
+pub(crate) fn quantities<'a>(rows: &[&'a Row]) -> Vec<(&'a str, &'a str)> {
     let mut quantities = Vec::new();
-    for told in rows.iter().filter_map(Row::found).flat_map(|found| &found.findings) {
+    for told in rows.iter().filter_map(|row| row.found()).flat_map(|found| &found.findings) {
         let quantity = (told.name.as_str(), told.unit.as_str());
         if !quantities.contains(&quantity) {
             quantities.push(quantity);
@@ -179,7 +198,8 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     let preferred = comparison.preferred();
     let gain = Some((Source::Gain, record.given.choice.scale.unwrap_or(1.0), record.question.scale_u))
         .filter(|gain| gain.2 > 0.0);
-    let stated = record.question.stated().chain(gain);
+    let clock = Some((Source::Clock, 1.0, record.given.choice.rate_u)).filter(|clock| clock.2 > 0.0);
+    let stated = record.question.stated().chain(gain).chain(clock);
     let doubts = comparison
         .warnings()
         .iter()
@@ -191,13 +211,16 @@ fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
     Ok(Found {
         origin: input.origin,
         law: preferred.law().to_owned(),
-        is_decided: comparison.is_decided(),
+        is_decided: comparison.is_conclusive(),
         findings: told(preferred),
+        declared: record.question.declared().collect(),
         stated: stated.map(|(source, value, u)| Stated { source: source.to_string(), value, u }).collect(),
         rms_residual: preferred.rms_residual(),
         unit: decay.record().unit().to_owned(),
         amplitude: decay.summary().amplitudes.0,
         half_swings: decay.summary().half_swings,
+        rate_hz: decay.record().rate(),
+        duration_s: decay.record().duration(),
         warnings: warnings.collect(),
         doubts,
         samples,

@@ -101,14 +101,14 @@ impl Sheet {
         Ok(sheet)
     }
 
-    /// All fields in their order, with what the records themselves say.
-    pub(crate) fn fields(&self, rows: &[Row]) -> Vec<Field> {
+    /// All fields in their order, with what the records that are `counted` of all `rows` themselves say.
+    pub(crate) fn fields(&self, rows: &[Row], counted: &[&Row]) -> Vec<Field> {
         let field = |(part, key, words): &(&'static str, &str, &str)| {
             let given = self.given.get(*key).cloned();
-            let found = if given.is_none() { found(key, rows) } else { None };
+            let found = if given.is_none() { found(key, counted) } else { None };
             Field { part, name: (*words).to_owned(), is_found: found.is_some(), value: given.or(found) }
         };
-        let results = results(rows);
+        let results = results(rows.len(), counted);
         let results = results.map(|(name, value)| Field { part: RESULTS, name, value: Some(value), is_found: true });
         let further = self.further.iter().map(|(name, value)| {
             let value = Some(value.clone()).filter(|value| !value.is_empty());
@@ -119,8 +119,8 @@ impl Sheet {
 }
 
 /// Value of a field that follows from the records.
-fn found(key: &str, rows: &[Row]) -> Option<String> {
-    let found = || rows.iter().filter_map(Row::found);
+fn found(key: &str, rows: &[&Row]) -> Option<String> {
+    let found = || rows.iter().filter_map(|row| row.found());
     match key {
         "motion" => found().next().map(|_| "reciprocating: a free vibration that decays".to_owned()),
         "normal_load" => range(rows.iter().filter_map(|row| number_in(row, LOAD)), "N"),
@@ -160,9 +160,8 @@ fn range(values: impl Iterator<Item = f64>, unit: &str) -> Option<String> {
 }
 
 /// Number of replicates, and the mean with its spread of each measure of friction.
-fn results(rows: &[Row]) -> impl Iterator<Item = (String, String)> {
-    let found = rows.iter().filter_map(Row::found).count();
-    let replicates = ("replicates".to_owned(), format!("{found} identified of {} records", rows.len()));
+fn results(all: usize, rows: &[&Row]) -> impl Iterator<Item = (String, String)> {
+    let replicates = ("replicates".to_owned(), format!("{} counted of {all} records", rows.len()));
     let loads: Vec<f64> = rows.iter().filter_map(|row| number_in(row, LOAD)).collect();
     // Forces under different loads have no mean that says anything.
     let measures = if loads.iter().any(|load| *load != loads[0]) { &FRICTION[..1] } else { &FRICTION[..] };

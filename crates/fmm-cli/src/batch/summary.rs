@@ -4,12 +4,14 @@ use fmm_model::{Estimated, Interval};
 use fmm_uq::{Outlier, Precision, RandomEffects};
 use serde::Serialize;
 
+use super::Asked;
 use super::campaign::Campaign;
-use super::dependence::{Dependence, FRICTION, dependences};
+use super::dependence::{Dependence, FRICTION, LOAD, dependences, number_in};
 use super::joint::Together;
 use super::row::{Outcome, Row, Told, quantities};
 use super::shared::{Parted, SharedPart};
 use super::sheet::Field;
+use super::table::probability;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;
@@ -19,8 +21,14 @@ const LEVEL: f64 = 0.95;
 pub(crate) struct Summary {
     pub(crate) records: usize,
     pub(crate) found: usize,
-    /// Records that are among those found although warnings doubt their fit.
+    /// Records that count in what follows.
+    pub(crate) counted: usize,
+    /// Records that the manifest leaves out, with the reason.
+    pub(crate) excluded: Vec<Excluded>,
+    /// Records among those found whose fit warnings doubt.
     pub(crate) doubted: Vec<Doubted>,
+    /// True if these count all the same, as that was asked for.
+    pub(crate) counts_doubtful: bool,
     pub(crate) quantities: Vec<Quantity>,
     /// Friction against what differs between the records.
     pub(crate) dependences: Vec<Dependence>,
@@ -28,6 +36,23 @@ pub(crate) struct Summary {
     pub(crate) joint: Option<Outcome<Together>>,
     /// The record sheet, where the manifest has one.
     pub(crate) sheet: Option<Vec<Field>>,
+}
+
+/// A record that the manifest leaves out.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Excluded {
+    pub(crate) file: String,
+    pub(crate) reason: String,
+}
+
+/// A record that lies farther from the others than chance and uncertainties explain.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Outlying {
+    pub(crate) file: String,
+    /// Distance from the consensus of the others, over it (1).
+    pub(crate) relative: f64,
+    /// p, probability that any record lies as far off by chance.
+    pub(crate) p: f64,
 }
 
 /// A record whose fit is doubted.
@@ -42,6 +67,8 @@ pub(crate) struct Doubted {
 pub(crate) struct Quantity {
     pub(crate) name: String,
     pub(crate) unit: String,
+    /// Ends of the loads (N) of these records, where the quantity differs with the load by design.
+    pub(crate) loads: Option<(f64, f64)>,
     /// Records that tell it with an uncertainty.
     pub(crate) records: usize,
     /// Records that show it without one, such as on a bound; they are left out.
@@ -64,6 +91,8 @@ pub(crate) struct Quantity {
     /// The mean weighted by the uncertainties alone, as if the records did not differ, with the standard uncertainty
     /// that it claims.
     pub(crate) weighted_mean: [f64; 2],
+    /// Records that lie far from the others.
+    pub(crate) outlying: Vec<Outlying>,
     /// The record whose absence moves the consensus most, and by how many standard uncertainties.
     pub(crate) most_influential: Option<(String, f64)>,
     /// Value and standard uncertainty by the joint fit, where it has the quantity as the records have it.
@@ -91,10 +120,28 @@ pub(crate) struct ByGroup {
 }
 
 impl Summary {
-    /// Of all rows, with friction `against` these columns, and what a joint fit said if there was one.
-    pub(crate) fn of(campaign: &Campaign, rows: &[Row], against: &[String], joint: Option<Outcome<Together>>) -> Self {
+    /// Of all rows, with what was `asked` of them together, and what a joint fit said if there was one.
+    pub(crate) fn of(campaign: &Campaign, rows: &[Row], asked: &Asked, joint: Option<Outcome<Together>>) -> Self {
         let together = joint.as_ref().and_then(Outcome::found);
-        let of = |quantity| Quantity::of(campaign, rows, together, quantity);
+        let counted: Vec<&Row> = rows.iter().filter(|row| row.counts(asked.count_doubtful)).collect();
+        let loads = groups_of_load(&counted);
+        let of = |quantity: (&'_ str, &'_ str)| -> Vec<Quantity> {
+            if loads.len() < 2 || !is_of_load(quantity.0) {
+                return Quantity::of(campaign, &counted, None, together, quantity).into_iter().collect();
+            }
+            let under = |ends: &(f64, f64)| {
+                let within = |row: &&&Row| number_in(row, LOAD).is_some_and(|load| (ends.0..=ends.1).contains(&load));
+                let rows: Vec<&Row> = counted.iter().filter(within).copied().collect();
+                Quantity::of(campaign, &rows, Some(*ends), together, quantity)
+            };
+            loads.iter().filter_map(under).collect()
+        };
+        let excluded = |row: &Row| match &row.outcome {
+            Outcome::Refused(reason) if row.is_excluded => {
+                Some(Excluded { file: row.file.display().to_string(), reason: reason.clone() })
+            }
+            _ => None,
+        };
         let doubted = |row: &Row| {
             let doubts = row.found().map(|found| found.doubts.clone()).filter(|doubts| !doubts.is_empty())?;
             Some(Doubted { file: row.file.display().to_string(), doubts })
@@ -102,13 +149,61 @@ impl Summary {
         Self {
             records: rows.len(),
             found: rows.iter().filter_map(Row::found).count(),
+            counted: counted.len(),
+            excluded: rows.iter().filter_map(excluded).collect(),
             doubted: rows.iter().filter_map(doubted).collect(),
-            quantities: quantities(rows).into_iter().filter_map(of).collect(),
-            dependences: dependences(rows, against),
+            counts_doubtful: asked.count_doubtful,
+            quantities: quantities(&counted).into_iter().flat_map(of).collect(),
+            dependences: dependences(&counted, &asked.against),
             joint,
-            sheet: campaign.sheet.as_ref().map(|sheet| sheet.fields(rows)),
+            sheet: campaign.sheet.as_ref().map(|sheet| sheet.fields(rows, &counted)),
         }
     }
+
+    /// The measure of friction that tells most of what the records have in common.
+    pub(crate) fn main(&self) -> Option<&Quantity> {
+        let of = |ending: &&str| {
+            self.quantities.iter().find(|quantity| quantity.loads.is_none() && quantity.name.ends_with(*ending))
+        };
+        FRICTION.iter().find_map(of)
+    }
+
+    /// Why a joint fit would claim too much; `None` where its friction is that of all records.
+    pub(crate) fn against_joint(&self) -> Option<String> {
+        let differ = self.main().filter(|quantity| quantity.p < DIFFER)?;
+        Some(format!(
+            "the records differ in {} beyond their uncertainties (p {}), by {:.2} % in standard deviation, and one law of one \
+             machine for all would claim too small an uncertainty: take the consensus, which allows for it, leave out a record that \
+             lies far off by `exclude` in the manifest, or fit groups of records that agree",
+            differ.name,
+            probability(differ.p),
+            100.0 * differ.between / differ.mean.abs()
+        ))
+    }
+}
+
+/// Loads that differ by less than this factor are one load that was set again (1), by judgement.
+const ONE_LOAD: f64 = 1.02;
+/// Below this p records differ beyond their uncertainties, or lie far from the others (1).
+pub(super) const DIFFER: f64 = 0.05;
+
+/// True for a force, or a force per mass, which differs with the load by design.
+fn is_of_load(name: &str) -> bool {
+    FRICTION[1..].iter().any(|level| name.ends_with(level))
+}
+
+/// Ends of the loads (N) under which `rows` stand, those that are alike together.
+fn groups_of_load(rows: &[&Row]) -> Vec<(f64, f64)> {
+    let mut loads: Vec<f64> = rows.iter().filter_map(|row| number_in(row, LOAD)).collect();
+    loads.sort_by(f64::total_cmp);
+    let mut groups: Vec<(f64, f64)> = Vec::new();
+    for load in loads {
+        match groups.last_mut() {
+            Some((low, high)) if load <= ONE_LOAD * *low => *high = load,
+            _ => groups.push((load, load)),
+        }
+    }
+    groups
 }
 
 /// Value of a quantity by the joint fit. Forces at one load are not those of records at others.
@@ -123,9 +218,15 @@ fn by_joint(together: &Together, (name, unit): (&str, &str)) -> Option<(f64, Opt
 }
 
 impl Quantity {
-    fn of(campaign: &Campaign, rows: &[Row], together: Option<&Together>, quantity: (&str, &str)) -> Option<Self> {
+    fn of(
+        campaign: &Campaign,
+        rows: &[&Row],
+        loads: Option<(f64, f64)>,
+        together: Option<&Together>,
+        quantity: (&str, &str),
+    ) -> Option<Self> {
         let shown: Vec<(&Row, &Told)> =
-            rows.iter().filter_map(|row| row.told(quantity).map(|told| (row, told))).collect();
+            rows.iter().filter_map(|row| row.told(quantity).map(|told| (*row, told))).collect();
         let told: Vec<(&Row, &Told)> =
             shown.iter().copied().filter(|(_, told)| told.u.is_some_and(|u| u > 0.0)).collect();
         let parted = Parted::of(&told);
@@ -137,10 +238,18 @@ impl Quantity {
             let others = consensus.without(index).ok()?.mean().value;
             Some((row.file.display().to_string(), (others - mean) / u))
         });
+        let outlying = told.iter().enumerate().filter_map(|(index, (row, told))| {
+            let p = consensus.outlier_p_value(index).ok().filter(|p| *p < DIFFER)?;
+            let others = consensus.without(index).ok()?.mean().value;
+            Some(Outlying { file: row.file.display().to_string(), relative: told.value / others - 1.0, p })
+        });
+        let outlying = outlying.collect();
         let plain = consensus.without_effects();
         Some(Self {
             name: quantity.0.to_owned(),
             unit: quantity.1.to_owned(),
+            loads,
+            outlying,
             records: told.len(),
             left_out: shown.len() - told.len(),
             mean,

@@ -6,13 +6,15 @@ use std::fmt::Write;
 use fmm_model::Rounded;
 
 use super::campaign::Campaign;
+use super::dependence::FRICTION;
 use super::row::{Found, Outcome, Row, Told, in_unit, quantities};
 use super::sheet::Field;
-use super::summary::{ByGroup, Quantity, Summary};
+use super::summary::{ByGroup, Outlying, Quantity, Summary};
+use crate::report::of_size;
 
 /// One line for each record, with all digits.
 pub(crate) fn csv(campaign: &Campaign, rows: &[Row]) -> Result<String, Box<dyn Error>> {
-    let names = quantities(rows);
+    let names = quantities(&rows.iter().collect::<Vec<_>>());
     let columns = campaign.columns();
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head: Vec<String> = vec!["file".to_owned()];
@@ -66,17 +68,65 @@ pub(super) fn statement(quantity: &Quantity) -> String {
     let interval = Rounded::new(*mean, Some(*u)).interval(*low, *high);
     let differ = if *p < 0.05 {
         let share = 100.0 * between / mean.abs();
-        let less = if *p < 1e-9 { "p < 1e-9".to_owned() } else { format!("p = {p:.1e}") };
-        format!("the records differ beyond their uncertainties ({less}), by {share:.2} % in standard deviation")
+        let p = probability(*p);
+        format!("the records differ beyond their uncertainties (p {p}), by {share:.2} % in standard deviation")
     } else {
         format!("the records agree within their uncertainties (p = {p:.2})")
     };
     format!(
         "{} = {}, 95 % within {interval}, from {records} records{}; {differ}",
-        quantity.name,
+        name(quantity),
         quantity_text(quantity, *mean, *u),
         shared(quantity)
     )
+}
+
+/// The name of a quantity, with the load that it belongs to.
+pub(super) fn name(quantity: &Quantity) -> String {
+    match quantity.loads {
+        None => quantity.name.clone(),
+        Some((low, high)) if low == high => format!("{} under {low} N", quantity.name),
+        Some((low, high)) => format!("{} under {low} N to {high} N", quantity.name),
+    }
+}
+
+/// Result of the campaign in a sentence: friction with its expanded uncertainty for k = 2.
+pub(super) fn result_line(summary: &Summary) -> Option<String> {
+    let quantity = summary.main()?;
+    let Quantity { mean, u, interval_95: [low, high], .. } = *quantity;
+    let stated = Rounded::new(mean, Some(2.0 * u));
+    let text = stated.to_string();
+    // A common power of ten belongs to both.
+    let (value, expanded) = text.split_once(" ± ").unwrap_or((&text, ""));
+    let (value, power) = match value.strip_prefix('(') {
+        Some(value) => (value, expanded.split_once(')').map_or("", |(_, power)| power)),
+        None => (value, ""),
+    };
+    let expanded = expanded.split(')').next().unwrap_or_default();
+    Some(format!(
+        "{} = {}, U = {} (k = 2); 95 % within {} by Student's t, from {} records",
+        quantity.name.replace('_', " "),
+        in_unit(format_args!("{value}{power}"), &quantity.unit),
+        in_unit(format_args!("{expanded}{power}"), &quantity.unit),
+        stated.interval(low, high),
+        quantity.records
+    ))
+}
+
+/// The number of records that were identified, count, and were left out.
+pub(super) fn records_line(summary: &Summary) -> String {
+    let Summary { records, found, counted, .. } = summary;
+    let counted = if counted < found { format!(", of which {counted} count") } else { String::new() };
+    let excluded = match summary.excluded.len() {
+        0 => String::new(),
+        count => format!("; {count} left out by the manifest"),
+    };
+    format!("{found} of {records} records identified{counted}{excluded}")
+}
+
+/// A small probability behind its letter.
+pub(super) fn probability(p: f64) -> String {
+    if p < 1e-9 { "< 1e-9".to_owned() } else { format!("= {p:.1e}") }
 }
 
 /// Shared part of u, if there is one.
@@ -86,7 +136,7 @@ fn shared(quantity: &Quantity) -> String {
     }
     let mut sources: Vec<&str> = quantity.shared.iter().map(|part| part.input.source.as_str()).collect();
     sources.dedup();
-    let u = in_unit(format_args!("{:.1e}", quantity.shared_u), &quantity.unit);
+    let u = in_unit(of_size(quantity.shared_u), &quantity.unit);
     format!(" (of u shared by records: {u} by {})", sources.join(", "))
 }
 
@@ -127,12 +177,48 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     lines
 }
 
-/// The records that count although their fit is doubted.
-pub(super) fn doubt_lines(summary: &Summary) -> impl Iterator<Item = String> {
-    summary
+/// The records that stand apart: left out by the manifest, doubted, or far from the others.
+pub(super) fn apart_lines(summary: &Summary) -> Vec<String> {
+    let excluded = summary.excluded.iter().map(|record| format!("{}: {}", record.file, record.reason));
+    let counted = if summary.counts_doubtful { "counted as was asked" } else { "not counted" };
+    let doubted = summary
         .doubted
         .iter()
-        .map(|record| format!("doubted, but counted below: {}: {}", record.file, record.doubts.join("; ")))
+        .map(|record| format!("doubtful, {counted}: {}: {}", record.file, record.doubts.join("; ")));
+    let mut lines: Vec<String> = excluded.chain(doubted).collect();
+    // Of a record one line, by the quantity that tells most.
+    let by_information = FRICTION.iter().copied().chain(["natural_frequency_hz", "damping_ratio"]);
+    let quantities =
+        by_information.flat_map(|ending| summary.quantities.iter().filter(move |one| one.name.ends_with(ending)));
+    let mut named: Vec<&str> = Vec::new();
+    for (quantity, record) in
+        quantities.flat_map(|quantity| quantity.outlying.iter().map(move |record| (quantity, record)))
+    {
+        let Outlying { file, relative, p } = record;
+        if named.contains(&file.as_str()) {
+            continue;
+        }
+        named.push(file);
+        lines.push(format!(
+            "far from the others, but counted: {file}: its {} lies {:+.1} % off (p {}); look at this record, and leave it out by \
+             `exclude` in the manifest if there is a reason",
+            name(quantity),
+            100.0 * relative,
+            probability(*p)
+        ));
+    }
+    if summary.found > 1 && summary.counted < 2 {
+        lines.push(
+            "fewer than two records are free of doubt, so that there is no consensus; --count-doubtful counts the others as well"
+                .to_owned(),
+        );
+    }
+    lines
+}
+
+/// Quantities that a table has room for; all of them are in the document and in campaign.csv.
+pub(super) fn is_main(name: &str) -> bool {
+    FRICTION.iter().any(|ending| name.ends_with(ending)) || ["natural_frequency_hz", "damping_ratio"].contains(&name)
 }
 
 /// Fields of the record sheet without a value.
@@ -152,7 +238,7 @@ pub(super) fn sheet_line(fields: &[Field]) -> String {
 pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
     let ByGroup { groups, repeatability, between, reproducibility, p, farthest, widest, .. } = group;
     let [within, between, all] =
-        [repeatability, between, reproducibility].map(|s| in_unit(format_args!("{s:.3e}"), &quantity.unit));
+        [repeatability, between, reproducibility].map(|s| in_unit(of_size(*s), &quantity.unit));
     let count = groups.len();
     let mut lines =
         vec![format!("by {count} groups: s_r = {within}, between {between}, s_R = {all}; groups alike: p = {p:.2e}")];
@@ -166,7 +252,8 @@ pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
 
 /// For the eye.
 pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
-    let names = quantities(rows);
+    let names: Vec<(&str, &str)> =
+        quantities(&rows.iter().collect::<Vec<_>>()).into_iter().filter(|(name, _)| is_main(name)).collect();
     let mut text = String::new();
     let width = rows.iter().map(|row| row.file.display().to_string().len()).max().unwrap_or(0).min(60);
     for row in rows {
@@ -175,18 +262,25 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
         let _ = match &row.outcome {
             Outcome::Found(found) => {
                 let values = names.iter().filter_map(|quantity| row.told(*quantity)).map(named_value);
+                let doubtful = if found.doubts.is_empty() { "" } else { "  (doubtful)" };
                 let doubts = match found.warnings.len() {
                     0 => String::new(),
                     1 => "  (1 warning)".to_owned(),
                     count => format!("  ({count} warnings)"),
                 };
-                writeln!(text, "{file:<width$}  {}: {}{doubts}", found.law, values.collect::<Vec<_>>().join(", "))
+                writeln!(
+                    text,
+                    "{file:<width$}  {}: {}{doubts}{doubtful}",
+                    found.law,
+                    values.collect::<Vec<_>>().join(", ")
+                )
             }
+            Outcome::Refused(why) if row.is_excluded => writeln!(text, "{file:<width$}  {why}"),
             Outcome::Refused(why) => writeln!(text, "{file:<width$}  refused: {why}"),
         };
     }
-    let _ = writeln!(text, "\n{} of {} records identified", summary.found, summary.records);
-    for line in doubt_lines(summary) {
+    let _ = writeln!(text, "\n{}", records_line(summary));
+    for line in result_line(summary).into_iter().chain(apart_lines(summary)) {
         let _ = writeln!(text, "  {line}");
     }
     for quantity in &summary.quantities {

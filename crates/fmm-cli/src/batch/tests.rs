@@ -45,7 +45,7 @@ fn records(folder: &Path, levels: &[f64]) -> Vec<PathBuf> {
 }
 
 /// No question beside the rows.
-const NOTHING: Asked = Asked { joint: false, against: Vec::new() };
+const NOTHING: Asked = Asked { joint: false, count_doubtful: false, against: Vec::new() };
 
 fn law() -> Vec<String> {
     vec!["--law".to_owned(), LAW.to_owned()]
@@ -120,9 +120,15 @@ fn a_manifest_sets_options_and_groups() {
         assert!(off < 4.0 * found.u.unwrap() && off < 0.08 * coefficient, "{found:?}");
     }
     assert!(matches!(&rows[4].outcome, Outcome::Refused(why) if why.contains("missing.csv")), "{:?}", rows[4]);
-    let summary = Summary::of(&campaign, &rows, &[], None);
+    let summary = Summary::of(&campaign, &rows, &NOTHING, None);
     assert_eq!((summary.records, summary.found), (5, 4));
-    let force = summary.quantities.iter().find(|quantity| quantity.name == "friction_force").unwrap();
+    // Of records that do not say their loads, forces are taken for alike by design.
+    let unsaid = rows.iter().cloned().map(|mut row| {
+        row.description.remove("normal-load");
+        row
+    });
+    let unsaid = Summary::of(&campaign, &unsaid.collect::<Vec<_>>(), &NOTHING, None);
+    let force = unsaid.quantities.iter().find(|quantity| quantity.name == "friction_force").unwrap();
     let group = force.precision.as_ref().unwrap();
     // The initial state and the offset belong to each record, not to the machine.
     let names: Vec<&str> = summary.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
@@ -180,27 +186,45 @@ fn the_most_influential_record_is_named() {
             law: LAW.to_owned(),
             is_decided: true,
             findings: vec![told],
+            declared: BTreeMap::new(),
             stated: Vec::new(),
             rms_residual: 1.0,
             unit: "m".to_owned(),
             amplitude: 1.0,
             half_swings: 9,
+            rate_hz: 100.0,
+            duration_s: 5.0,
             warnings: Vec::new(),
             doubts: if index == 2 { vec!["the residuals are structured".to_owned()] } else { Vec::new() },
             samples: index.to_string(),
         };
         let file = PathBuf::from(format!("run_{index}.csv"));
-        Row { file, description: BTreeMap::new(), outcome: Outcome::Found(found) }
+        Row { file, description: BTreeMap::new(), is_excluded: false, outcome: Outcome::Found(found) }
     };
     let rows: Vec<Row> = [1.0, 1.1, 5.0, 0.9].iter().enumerate().map(row).collect();
     let campaign = Campaign { options: Vec::new(), group: None, sheet: None, entries: Vec::new() };
-    let summary = Summary::of(&campaign, &rows, &[], None);
+    let all = Asked { count_doubtful: true, ..NOTHING };
+    let summary = Summary::of(&campaign, &rows, &all, None);
     let (file, moved) = summary.quantities[0].most_influential.as_ref().unwrap();
     assert!(file == "run_2.csv" && *moved < -0.5, "{file}: {moved}");
-    // It counts, but not in silence.
-    let named = "doubted, but counted below: run_2.csv: the residuals are structured";
-    let (text, page) = (table::text(&rows, &summary), page::page(&campaign, &rows, &summary));
-    assert!(text.contains(named) && text.matches("doubted").count() == 1 && page.contains(named), "{text}");
+    // It counts where that is asked for, but not in silence: doubted, and far from the others.
+    let told = |summary: &Summary| [table::text(&rows, summary), page::page(&campaign, &rows, summary)];
+    for text in told(&summary) {
+        assert!(text.contains("doubtful, counted as was asked: run_2.csv: the residuals are structured"), "{text}");
+        assert!(text.contains("far from the others, but counted: run_2.csv: its mu lies +400.0 % off"), "{text}");
+    }
+    // Otherwise it stands apart, with the reason, and does not move the mean.
+    let summary = Summary::of(&campaign, &rows, &NOTHING, None);
+    assert_eq!((summary.found, summary.counted, summary.quantities[0].records), (4, 3, 3));
+    assert!((summary.quantities[0].mean - 1.0).abs() < 1e-12 && summary.quantities[0].outlying.is_empty());
+    for text in told(&summary) {
+        assert!(text.contains("doubtful, not counted: run_2.csv: the residuals are structured"), "{text}");
+        assert!(text.contains("mu = 1.00, U = 0.12 (k = 2); 95 % within [0.75, 1.25] by Student"), "{text}");
+    }
+    // Where nothing is left, the way out is named.
+    let summary = Summary::of(&campaign, &rows[1..3], &NOTHING, None);
+    let text = table::text(&rows, &summary);
+    assert!(summary.quantities.is_empty() && text.contains("--count-doubtful counts the others as well"), "{text}");
 }
 
 /// Six runs under one load that is known to 0.5 %: the consensus does not know μ better than that. Two loads that are
@@ -217,7 +241,7 @@ fn what_records_share_does_not_average_out() {
         std::fs::write(home.join("runs.csv"), manifest).unwrap();
         let campaign = Campaign::of_manifest(&home.join("runs.csv"), law(), None).unwrap();
         let rows = rows(&campaign);
-        let summary = Summary::of(&campaign, &rows, &[], None);
+        let summary = Summary::of(&campaign, &rows, &NOTHING, None);
         let text = table::text(&rows, &summary);
         (summary.quantities.into_iter().find(|quantity| quantity.name == "mu").unwrap(), text)
     };
@@ -230,7 +254,7 @@ fn what_records_share_does_not_average_out() {
     // The weights and what differs are those of the records' own.
     assert_eq!((one_load.mean, one_load.between), (without.mean, without.between));
     assert!(one_load.shared[0].records == 6 && one_load.shared[0].input.value == 2.0, "{one_load:?}");
-    assert!(text.contains("from 6 records (of u shared by records: 5.0e-4 by normal load)"), "{text}");
+    assert!(text.contains("from 6 records (of u shared by records: 0.00050 by normal load)"), "{text}");
     // Values that differ by less than their uncertainty, to leave μ alike: half of each contribution, in squares.
     let (two_loads, _) = mu([(2.0, 0.01), (2.0, 0.01), (2.0, 0.01), (2.001, 0.01), (2.001, 0.01), (2.001, 0.01)]);
     let records: Vec<usize> = two_loads.shared.iter().map(|part| part.records).collect();
@@ -296,7 +320,7 @@ fn friction_stands_against_load_and_columns() {
     let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
     let rows = rows(&campaign);
     let columns = ["temperature".to_owned(), "operator".to_owned(), "mass".to_owned()];
-    let summary = Summary::of(&campaign, &rows, &columns, None);
+    let summary = Summary::of(&campaign, &rows, &Asked { against: columns.to_vec(), ..NOTHING }, None);
     let against: Vec<&str> = summary.dependences.iter().map(|found| found.against.as_str()).collect();
     // Releases are alike to within the friction of a half swing.
     assert_eq!(against, ["normal_load", "temperature", "operator", "mass"]);
@@ -312,13 +336,98 @@ fn friction_stands_against_load_and_columns() {
     );
     assert!(summary.dependences[2].line.is_none() && summary.dependences[3].line.is_none());
     assert!(summary.dependences[3].statement.contains("fewer than two different values"));
-    let two = Summary::of(&campaign, &rows[1..3], &[], None);
+    let two = Summary::of(&campaign, &rows[1..3], &NOTHING, None);
     let statement = "friction force against normal load: 2 runs are given; at least 3 are needed";
     assert_eq!(two.dependences[0].statement, statement);
     let page = page::page(&campaign, &rows, &summary);
     assert!(page.contains("id=\"dependence-0\"") && page.contains("Friction against load"));
-    let asked = Asked { joint: false, against: vec!["weather".to_owned()] };
+    let asked = Asked { against: vec!["weather".to_owned()], ..NOTHING };
     assert!(asked.check(&campaign).unwrap_err().contains("there is no column `weather`; there are file,"));
+}
+
+/// Forces under different loads have no mean: each load has its own, and the coefficient one of all.
+#[test]
+fn what_differs_by_design_has_no_consensus() {
+    let home = folder("design");
+    let [_, toml] = three_loads(&home);
+    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let rows = rows(&campaign);
+    let summary = Summary::of(&campaign, &rows, &NOTHING, None);
+    let of = |name: &str| summary.quantities.iter().filter(|one| one.name == name).collect::<Vec<_>>();
+    let forces: Vec<(Option<(f64, f64)>, usize)> =
+        of("friction_force").iter().map(|one| (one.loads, one.records)).collect();
+    assert_eq!(forces, [(Some((2.0, 2.0)), 2), (Some((4.0, 4.0)), 2), (Some((8.0, 8.0)), 2)]);
+    for (force, load) in of("friction_force").iter().zip([2.0, 4.0, 8.0]) {
+        assert!((force.mean / (0.1 * load) - 1.0).abs() < 0.03, "{force:?}");
+    }
+    assert_eq!((of("mu").len(), of("mu")[0].loads, of("mu")[0].records), (1, None, 6));
+    let (text, page) = (table::text(&rows, &summary), page::page(&campaign, &rows, &summary));
+    assert!(text.contains("friction_force under 2 N = ") && !text.contains("\n  friction_force = "), "{text}");
+    // Mu with its expanded uncertainty comes first, and its budget.
+    let verdict = page.split("class=\"verdict\">").nth(1).unwrap().split('<').next().unwrap();
+    assert!(verdict.starts_with("mu = 0.10") && verdict.contains("(k = 2)"), "{verdict}");
+    assert!(page.contains("Budget of mu") && page.contains("a column `date` of the manifest says it"), "{page}");
+}
+
+/// The document of a campaign is enough for a plan of the next tests.
+#[test]
+fn the_next_tests_follow_from_a_campaign() {
+    let home = folder("next");
+    let [_, toml] = three_loads(&home);
+    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let rows = rows(&campaign);
+    let document = table::document(&rows, &Summary::of(&campaign, &rows, &NOTHING, None)).unwrap();
+    let (plan, more) = crate::design::of_campaign(&document).unwrap();
+    assert!(plan.contains("mass = { value = 10, u = 0.01 }") && plan.contains("normal_load = [2, 4, 8]"), "{plan}");
+    assert!(plan.contains("law = \"coulomb + linear\"") && plan.contains("aim = \"mu\""), "{plan}");
+    assert!(more.starts_with("the consensus of mu has u = ") && more.contains("by 6 records; 3 more"), "{more}");
+}
+
+/// A record that the manifest leaves out counts in nothing, and is named with the reason.
+#[test]
+fn a_record_can_be_left_out() {
+    let home = folder("exclude");
+    records(&home, &[0.02, 0.0202, 0.03]);
+    let manifest = home.join("runs.csv");
+    std::fs::write(&manifest, "file,exclude\nrun_00.csv,\nrun_01.csv,false\nrun_02.csv,a finger on the mass\n")
+        .unwrap();
+    let campaign = Campaign::of_manifest(&manifest, law(), None).unwrap();
+    let all = rows(&campaign);
+    let summary = Summary::of(&campaign, &all, &NOTHING, None);
+    assert_eq!((summary.found, summary.counted, summary.excluded.len()), (2, 2, 1));
+    let said = "run_02.csv: left out by the manifest: a finger on the mass";
+    assert!(page::page(&campaign, &all, &summary).contains(said));
+    let text = table::text(&all, &summary);
+    assert!(text.contains(said) && text.contains("2 of 3 records identified; 1 left out by the manifest"), "{text}");
+    // The same as a truth value of TOML.
+    let list = "[[record]]\nfile = \"run_00.csv\"\n[[record]]\nfile = \"run_02.csv\"\nexclude = true\n";
+    std::fs::write(home.join("runs.toml"), list).unwrap();
+    let rows = rows(&Campaign::of_manifest(&home.join("runs.toml"), law(), None).unwrap());
+    assert!(rows[1].is_excluded && rows[1].outcome == Outcome::Refused("left out by the manifest".to_owned()));
+}
+
+/// A name that is not Unicode is found, printed with a sign, and found again.
+#[cfg(unix)]
+#[test]
+fn names_that_are_not_unicode_are_found() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let home = folder("bytes");
+    let data = home.join("data");
+    std::fs::create_dir_all(&data).unwrap();
+    records(&data, &[0.02]);
+    std::fs::rename(data.join("run_00.csv"), data.join(OsStr::from_bytes(b"caf\xe9.csv"))).unwrap();
+    let campaign = Campaign::of_files(&[data], law()).unwrap();
+    let all = rows(&campaign);
+    let summary = Summary::of(&campaign, &all, &NOTHING, None);
+    assert!(
+        all[0].found().is_some() && table::document(&all, &summary).unwrap().contains("caf\u{fffd}.csv"),
+        "{all:?}"
+    );
+    let out = home.join("out");
+    campaign.keep(&out).unwrap();
+    all[0].write(&out, 0).unwrap();
+    assert!(Row::read(&out, 0).is_some_and(|row| row.found().is_some()) && Campaign::read(&out).unwrap() == campaign);
 }
 
 /// The fields of the sheet: given, known by the records, and not given.
@@ -328,7 +437,7 @@ fn the_record_sheet_says_what_is_missing() {
     let [_, toml] = three_loads(&home);
     let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
     let rows = rows(&campaign);
-    let summary = Summary::of(&campaign, &rows, &[], None);
+    let summary = Summary::of(&campaign, &rows, &NOTHING, None);
     let value = |part: &str, field: &str| {
         let fields = summary.sheet.as_ref().unwrap();
         fields.iter().find(|own| own.part == part && own.name == field).and_then(|own| own.value.clone())
@@ -338,7 +447,7 @@ fn the_record_sheet_says_what_is_missing() {
     // What is given goes before what the records say.
     assert_eq!(value("Conditions", "normal load or pressure").as_deref(), Some("dead weight"));
     assert_eq!(value("Further", "grease batch").as_deref(), Some("7"));
-    assert_eq!(value("Results", "replicates").as_deref(), Some("6 identified of 6 records"));
+    assert_eq!(value("Results", "replicates").as_deref(), Some("6 counted of 6 records"));
     let mu: Vec<f64> = rows.iter().map(|row| row.told(("mu", "1")).unwrap().value).collect();
     let mean = mu.iter().sum::<f64>() / 6.0;
     let deviation = (mu.iter().map(|mu| (mu - mean).powi(2)).sum::<f64>() / 5.0).sqrt();
@@ -361,16 +470,25 @@ fn a_joint_fit_says_what_it_takes_for_granted() {
     let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
     let rows = rows(&campaign);
     let joint = |campaign: &Campaign, rows: &[Row]| {
-        Outcome::from(Together::of(campaign, rows, |_, _| ControlFlow::Continue(())))
+        Outcome::from(Together::of(campaign, rows, false, |_, _| ControlFlow::Continue(())))
     };
     let found = joint(&campaign, &rows);
     let together = found.found().unwrap_or_else(|| panic!("{found:?}"));
     assert_eq!((together.records, together.law.as_str(), together.reference_load), (6, "coulomb + linear", Some(2.0)));
     let mu = together.findings.iter().find(|told| told.name == "mu").unwrap();
     assert!((mu.value - 0.1).abs() < 2e-3, "{mu:?}");
-    let summary = Summary::of(&campaign, &rows, &[], Some(found.clone()));
+    let summary = Summary::of(&campaign, &rows, &NOTHING, Some(found.clone()));
     let of = |name: &str| summary.quantities.iter().find(|quantity| quantity.name == name).unwrap();
     assert_eq!(of("mu").joint, Some((mu.value, mu.u)));
+    // These runs differ by a hundredth, which no joint fit allows for.
+    let why = summary.against_joint().unwrap();
+    assert!(
+        why.starts_with("the records differ in mu beyond their uncertainties") && why.contains("`exclude`"),
+        "{why}"
+    );
+    let asked = Asked { joint: true, ..NOTHING };
+    let refused = asked.summary(&campaign, &rows).unwrap();
+    assert!(matches!(&refused.joint, Some(Outcome::Refused(said)) if *said == why), "{:?}", refused.joint);
     // A force at one load is none of the records at the others.
     assert!(of("friction_force").joint.is_none() && of("natural_frequency_hz").joint.is_some());
     let text = table::text(&rows, &summary);
@@ -419,17 +537,19 @@ fn copies_count_once_and_doubts_are_named() {
     std::fs::write(home.join("run_04.csv"), disturbed).unwrap();
     let campaign = Campaign::of_files(std::slice::from_ref(&home), law()).unwrap();
     let rows = Row::without_copies(rows(&campaign));
+    let asked = Asked { count_doubtful: true, ..NOTHING };
     let refused: Vec<bool> = rows.iter().map(|row| row.found().is_none()).collect();
     assert_eq!(refused, [false, false, true, true, false], "{rows:?}");
     let Outcome::Refused(why) = &rows[3].outcome else { panic!("{rows:?}") };
     assert!(why.starts_with("the same samples as ") && why.contains("run_00.csv"), "{why}");
-    let summary = Summary::of(&campaign, &rows, &[], None);
+    assert_eq!(Summary::of(&campaign, &rows, &NOTHING, None).quantities[0].records, 2);
+    let summary = Summary::of(&campaign, &rows, &asked, None);
     assert_eq!((summary.found, summary.quantities[0].records), (3, 3));
     let doubted: Vec<&str> = summary.doubted.iter().map(|record| record.file.as_str()).collect();
     assert!(doubted.len() == 1 && doubted[0].ends_with("run_04.csv"), "{:?}", summary.doubted);
     assert!(table::text(&rows, &summary).contains("refused: the same samples as "));
     give_out(&rows, &summary, true).unwrap();
     let none = &rows[2..4];
-    let failed = give_out(none, &Summary::of(&campaign, none, &[], None), true).unwrap_err().to_string();
+    let failed = give_out(none, &Summary::of(&campaign, none, &NOTHING, None), true).unwrap_err().to_string();
     assert!(failed.starts_with("none of 2 records was identified"), "{failed}");
 }

@@ -3,6 +3,7 @@
 //! Reads a machine, a guess of its friction and the tests that may be made, and says what each would tell, which set of
 //! them tells most, and what each of that set tells that the others do not.
 
+mod campaign;
 mod candidates;
 mod figures;
 mod file;
@@ -17,14 +18,20 @@ use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
 use serde::Serialize;
 
 use crate::files;
-use crate::output::{Output, print, print_json};
+use crate::output::{Output, print, print_json, while_busy};
+use campaign::Campaign;
 use file::{Robust, Wanted};
 
 /// Says which tests to make.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The plan, as TOML or, by its ending, as JSON
-    file: PathBuf,
+    #[arg(required_unless_present = "from")]
+    file: Option<PathBuf>,
+    /// Make the plan from the document of a campaign, campaign.json of `fmm batch --out`: its machine, friction and noise,
+    /// with tests at its loads and releases. It is printed, to be changed and given as a file
+    #[arg(long, value_name = "campaign.json", conflicts_with = "file")]
+    from: Option<PathBuf>,
     #[command(flatten)]
     output: Output,
 }
@@ -72,9 +79,35 @@ struct Answer {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let answer = files::document(&arguments.file, |file| answer(Wanted::of(file)?))?;
+    let plan = || -> Result<_, Box<dyn Error>> {
+        if let Some(path) = &arguments.file {
+            return Ok((files::document(path, |file| answer(Wanted::of(file)?))?, None));
+        }
+        let path =
+            arguments.from.as_deref().ok_or("give the file of a plan, or --from with the document of a campaign")?;
+        files::document(path, |campaign: Campaign| {
+            let (plan, more) = campaign.plan()?;
+            let answer = answer(Wanted::of(toml::from_str(&plan)?)?)?;
+            Ok((answer, Some([plan, more])))
+        })
+    };
+    let (answer, told) = while_busy("comparing tests", plan)??;
     arguments.output.draw("design.svg", || Ok(figures::picture(&answer).into_iter().collect()))?;
-    if arguments.output.json { print_json(&answer) } else { print(text(&answer).trim_end()) }
+    if arguments.output.json {
+        return print_json(&answer);
+    }
+    let told = told.map_or_else(String::new, |[plan, more]| {
+        format!("the plan, to be changed and given as a file:\n\n{plan}\n{more}\n\n")
+    });
+    print(format_args!("{told}{}", text(&answer).trim_end()))
+}
+
+/// The plan that follows from the document of a campaign, after it was carried out, and what more records would tell.
+#[cfg(test)]
+pub(crate) fn of_campaign(document: &str) -> Result<(String, String), Box<dyn Error>> {
+    let told = serde_json::from_str::<Campaign>(document)?.plan()?;
+    answer(Wanted::of_toml(&told.0)?)?;
+    Ok(told)
 }
 
 fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {

@@ -182,6 +182,17 @@ impl Question {
         named.candidates()?.pop().ok_or_else(|| format!("there is no law called {law}").into())
     }
 
+    /// Inputs of the machine that are declared, by their names, with value and standard uncertainty in their units.
+    pub(crate) fn declared(&self) -> impl Iterator<Item = (String, (f64, f64))> {
+        let declared = [
+            ("mass", self.mass, self.mass_u),
+            ("stiffness", self.stiffness, self.stiffness_u),
+            ("damping", self.damping, self.damping_u),
+            ("normal_load", self.normal_load, self.normal_load_u),
+        ];
+        declared.into_iter().filter_map(|(name, value, u)| Some((name.to_owned(), (value?, u))))
+    }
+
     /// Inputs of the machine with an uncertainty: source, value and standard uncertainty in their units.
     pub(crate) fn stated(&self) -> impl Iterator<Item = (Source, f64, f64)> {
         let stated = [

@@ -56,7 +56,7 @@ fn text(part: &Contribution<'_>) -> String {
 }
 
 /// An uncertainty to the places that one of its size deserves.
-pub(super) fn of_size(uncertainty: f64) -> String {
+pub(crate) fn of_size(uncertainty: f64) -> String {
     let text = Rounded::new(0.0, Some(uncertainty)).to_string();
     // Of "(0.0 ± 1.2)e-7" what stands behind the sign.
     text.split_once(" ± ").map_or(text.clone(), |(_, size)| size.replace(')', ""))

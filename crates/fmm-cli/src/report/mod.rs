@@ -12,7 +12,8 @@ use fmm_identify::{Finding, FittedMotion, Identification, Origin};
 use fmm_model::{Rounded, coverage_factor};
 use sha2::{Digest, Sha256};
 
-use self::budget::{budget, of_size};
+use self::budget::budget;
+pub(crate) use self::budget::of_size;
 pub(crate) use self::found::{Curve, Found, Pictures};
 use self::profiles::profiles;
 use crate::backbone;
