@@ -57,7 +57,7 @@ const PREFIXES: [(&str, f64, &[&str]); 9] = [
     ("n", 1e-9, &["n", "nano"]),
 ];
 
-const TABLE: [Row; 42] = [
+const TABLE: [Row; 43] = [
     row("1", 1.0, NONE, &[], &[]),
     row("%", 1e-2, NONE, &[], &[]),
     row("m", 1.0, LENGTH, &["k", "d", "c", "m", "µ", "n"], &["m", "metre", "meter"]),
@@ -90,7 +90,9 @@ const TABLE: [Row; 42] = [
     // In a file, g is free fall and not gram.
     row("gn", FREE_FALL, ACCELERATION, &["m"], &["g", "gn", "g0"]),
     row("N", 1.0, FORCE, &["k", "M", "da", "m", "µ"], &["N", "newton"]),
-    row("lbf", 4.448_221_615_260_5, FORCE, &[], &["lbf"]),
+    // In a file, lb is a force and not a mass.
+    row("lbf", 4.448_221_615_260_5, FORCE, &["k"], &["lbf", "lb", "lbs"]),
+    row("kip", 4_448.221_615_260_5, FORCE, &[], &["kip"]),
     row("kgf", FREE_FALL, FORCE, &[], &["kgf"]),
     row("Nm", 1.0, ENERGY, &["k", "m"], &["Nm"]),
     row("Nmm", 1e-3, ENERGY, &[], &["Nmm"]),

@@ -90,7 +90,7 @@ impl fmt::Display for Quantity {
 /// | angle | `rad`, `mrad`, `deg`, `°`, `rev` |
 /// | velocity | a length or an angle per time: `mm/s`, `m s^-1`, `ms⁻¹`, `km/h`, `deg/sec`, `°/s`; `rpm`, `dps`, `ips`, `mph` |
 /// | acceleration | one per time squared: `m/s^2`, `m/s²`, `m/s**2`, `mm/s/s`, `rad/s2`; `g`, `gn`, `mg` |
-/// | force, torque | `N`, `kN`, `mN`, `lbf`, `kgf`, `N m`, `N mm` |
+/// | force, torque | `N`, `kN`, `mN`, `lbf`, `lb`, `kip`, `kgf`, `N m`, `N mm`, `lb ft` |
 /// | anything | `V`, `mV`, `A`, `mA`; `counts`, `ticks`, `LSB`, of unknown size |
 ///
 /// The micro sign may be U+00B5, U+03BC or `u`. Capitals matter where a prefix or a unit would be another with them:
@@ -257,6 +257,7 @@ mod tests {
         all(&["rad/s", "rad/sec", "radians per second", "rad s^-1", "rads-1", "Rad/s"], 1.0);
         all(&["deg/s", "°/s", "deg/sec", "deg s^-1", "dps", "DPS", "degrees/second"], 0.017_453_292_519_943_295);
         all(&["mdps"], 17.453_292_519_943_295e-6);
+        all(&["rev/s"], std::f64::consts::TAU);
         all(&["rpm", "RPM", "rev/min"], 0.104_719_755_119_659_77);
     }
 
@@ -278,7 +279,9 @@ mod tests {
         all_mean(&["kN"], 1e3, "N", Quantity::Force);
         all_mean(&["MN"], 1e6, "N", Quantity::Force);
         all_mean(&["mN"], 1e-3, "N", Quantity::Force);
-        all_mean(&["lbf"], 4.448_221_615_260_5, "N", Quantity::Force);
+        all_mean(&["lbf", "lb", "lbs"], 4.448_221_615_260_5, "N", Quantity::Force);
+        all_mean(&["kip", "kips", "klbf"], 4_448.221_615_260_5, "N", Quantity::Force);
+        all_mean(&["lbf ft", "lb ft", "ft lb"], 1.355_817_948_331_4, "N m", Quantity::Force);
         all_mean(&["Nm", "N m", "N·m", "N*m"], 1.0, "N m", Quantity::Force);
         all_mean(&["V", "volts", "Volt"], 1.0, "V", Quantity::Other);
         all_mean(&["mV"], 1e-3, "V", Quantity::Other);
