@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 
 use crate::law::{FamilyVisitor, LawFamily};
 use crate::laws::{
-    AccelerationCoulomb, Berger, BoucWen, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair, GmsOf,
-    Hyperbolic, Karnopp, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck, ShiftedMakkarDixon,
-    Stribeck, StribeckLorentzian, Viscous,
+    AccelerationCoulomb, Berger, BoucWen, BoucWenByLevel, Coulomb, CoulombStatic, CoulombViscous, Dahl,
+    ExponentialPair, GmsOf, Hyperbolic, Karnopp, LuGre, MakkarDixon, MaxwellSlipOf, PowerLaw, RegularisedStribeck,
+    ShiftedMakkarDixon, Stribeck, StribeckLorentzian, Viscous,
 };
 
 macro_rules! catalogue {
@@ -62,6 +62,7 @@ catalogue!(
     Dahl,
     LuGre,
     BoucWen,
+    BoucWenByLevel,
     MaxwellSlipOf<1>,
     MaxwellSlipOf<2>,
     MaxwellSlipOf<3>,
@@ -94,7 +95,7 @@ mod tests {
         assert_eq!(family_named("glue", &mut Facts), None);
         let of_kind = |kind| all.iter().filter(|(_, other, _)| *other == kind).count();
         assert_eq!(of_kind(LawKind::PiecewiseLinear), 5);
-        assert_eq!(of_kind(LawKind::Bristle), 4);
+        assert_eq!(of_kind(LawKind::Bristle), 5);
         assert_eq!(of_kind(LawKind::Elements), 4);
     }
 

@@ -63,6 +63,7 @@ const DEFAULTS: &[(&str, &str, f64)] = &[
     ("gms", "exponent", 2.0),
     ("gms", "viscous", 0.0),
     ("bouc_wen", "amplitude", 1.0),
+    ("bouc_wen_by_level", "amplitude", 1.0),
 ];
 
 impl Slot {

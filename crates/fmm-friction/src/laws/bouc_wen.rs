@@ -169,6 +169,7 @@ impl LawFamily for BoucWenByLevel {
             Role::Shape,
         ),
     ];
+    const SPECIAL_CASES: &'static [SpecialCase] = BoucWen::SPECIAL_CASES;
     const SEARCH: SearchRole = SearchRole::NotTried("it is tried as the family bouc_wen");
     type At<D: Scalar> = BoucWen<D>;
 
