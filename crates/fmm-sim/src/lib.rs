@@ -124,7 +124,7 @@ mod simulate;
 mod tests;
 mod trajectory;
 
-pub use bristle::{Bristle, FrictionPoint, PrescribedMotion, friction_along};
+pub use bristle::{Bristle, FrictionPoint, PrescribedMotion, friction_along, friction_from};
 pub use error::SimulationError;
 pub use exact::Exact;
 pub use fixed_step::{Moreau, Thesis};

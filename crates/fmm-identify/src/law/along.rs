@@ -3,7 +3,7 @@
 use fmm_fit::EvaluationError;
 use fmm_friction::{BristleLaw, LawFamily, LawVisitor, Regime, SlidingLaw};
 use fmm_model::Scalar;
-use fmm_sim::{PrescribedMotion, State, friction_along};
+use fmm_sim::{PrescribedMotion, State, friction_from};
 
 /// A motion that was measured: one value a sample.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -117,15 +117,24 @@ impl<D: Scalar> Alignment<'_, D> {
     /// straight.
     fn stepped(&self, law: &dyn BristleLaw<D>, friction: &mut Vec<D>) -> Result<(), EvaluationError> {
         let MeasuredMotion { times, positions, .. } = self.motion;
-        // Bristles are at first as after a long way in the direction in which the record begins, as fast as it begins.
-        let mut slopes = vec![D::from(0.0); law.states()];
-        law.rate(D::from(1.0), &slopes.clone(), Regime::ALL_HOLD, &mut slopes);
-        let lengths = slopes.iter().enumerate().map(|(index, slope)| law.bound(index).value() / slope.value());
-        let way = lengths.fold(0.0, f64::max) * LONG;
-        let speed = self.motion.velocities[0].abs().max(SLOWEST * self.motion.fastest());
-        let (approach, direction) = (way / speed, self.deflection.value().signum());
-        let first = [positions[0] - direction * way, positions[0]].map(|position| (position, direction * speed));
-        let mut path = vec![(0.0, first[0]), (approach, first[1])];
+        let at_rest = || vec![D::from(0.0); law.states()];
+        let (mut path, mut first, mut approach) = (Vec::new(), at_rest(), 0.0);
+        if law.states() == 1 {
+            first[0] = law.bound(0) * self.deflection;
+        } else {
+            // Several bristles are at first as after a long way in the direction in which the record begins, as fast as
+            // it begins.
+            let mut slopes = at_rest();
+            law.rate(D::from(1.0), &at_rest(), Regime::ALL_HOLD, &mut slopes);
+            let lengths = slopes.iter().enumerate().map(|(index, slope)| law.bound(index).value() / slope.value());
+            let way = lengths.fold(0.0, f64::max) * LONG;
+            let speed = self.motion.velocities[0].abs().max(SLOWEST * self.motion.fastest());
+            let direction = self.deflection.value().signum();
+            approach = way / speed;
+            path.push((0.0, (positions[0] - direction * way, direction * speed)));
+            path.push((approach, (positions[0], direction * speed)));
+        }
+        let before = path.len();
         let since = |node: usize| approach + (times[node] - times[0]);
         for node in 0..times.len() - 1 {
             let segment = Segment::of(self.motion, node);
@@ -136,12 +145,12 @@ impl<D: Scalar> Alignment<'_, D> {
         let state =
             |(position, velocity): (f64, f64)| State { position: D::from(position), velocity: D::from(velocity) };
         let (since, states): (Vec<D>, Vec<_>) = path.into_iter().map(|(since, at)| (D::from(since), state(at))).unzip();
-        let points = friction_along(law, D::from(1.0), &PrescribedMotion::through(&since, &states)?)?;
+        let points = friction_from(law, D::from(1.0), &PrescribedMotion::through(&since, &states)?, &first)?;
         friction.clear();
         for (row, location) in (self.first..).zip(self.locations) {
             let node = location.node.min(times.len() - 2);
             let share = self.elapsed(row, SampleLocation { node, ..*location }) / (times[node + 1] - times[node]);
-            let [begin, end] = [2, 3].map(|point| points[2 * node + point].force);
+            let [begin, end] = [0, 1].map(|point| points[before + 2 * node + point].force);
             friction.push(begin + (end - begin) * share);
         }
         Ok(())

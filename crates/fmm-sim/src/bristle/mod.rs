@@ -29,7 +29,7 @@ use crate::mechanics::Forcing;
 use crate::scenario::{Sampling, Scenario, State};
 use crate::trajectory::{Engine, Recorder, Trajectory};
 
-pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along};
+pub use prescribed::{FrictionPoint, PrescribedMotion, friction_along, friction_from};
 
 /// Integrates laws with internal state, however stiff, from kink to kink of the motion.
 ///

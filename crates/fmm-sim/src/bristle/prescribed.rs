@@ -200,10 +200,43 @@ pub fn friction_along<D: Scalar, L: BristleLaw<D> + ?Sized>(
     normal_load: D,
     motion: &PrescribedMotion<D>,
 ) -> Result<Vec<FrictionPoint<D>>, SimulationError> {
+    friction_from(law, normal_load, motion, &vec![D::from(0.0); law.states()])
+}
+
+/// Like [`friction_along`], with bristles that have these `states` at the first point, each within its
+/// [bound](BristleLaw::bound).
+///
+/// ```
+/// use fmm_friction::Dahl;
+/// use fmm_sim::{PrescribedMotion, friction_from};
+///
+/// // Bristles of 0.1 per µm that have given way to 3 N keep it.
+/// let motion = PrescribedMotion::at_speed(&[0.0, 2e-6], 1e-6)?;
+/// let points = friction_from(&Dahl::new(0.3, 1e5, 1.0)?, 10.0, &motion, &[3e-6])?;
+/// assert!((points[0].force - 3.0).abs() < 1e-12 && (points[1].force - 3.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Those of [`friction_along`], and [`SimulationError::OutOfRange`] for a state beyond its bound, or another number of
+/// states than the law has.
+pub fn friction_from<D: Scalar, L: BristleLaw<D> + ?Sized>(
+    law: &L,
+    normal_load: D,
+    motion: &PrescribedMotion<D>,
+    states: &[D],
+) -> Result<Vec<FrictionPoint<D>>, SimulationError> {
     ModelError::require_not_negative("normal load", normal_load.value(), "N")?;
+    for index in 0..states.len().max(law.states()) {
+        let bound = if index < law.states() { law.bound(index).value() } else { 0.0 };
+        let state = states.get(index).map_or(f64::NAN, |state| state.value());
+        if !(state.abs() <= bound) || index >= law.states() {
+            return Err(SimulationError::deflection(index, state, bound));
+        }
+    }
     let mut points = Vec::with_capacity(motion.segments.len() + 1);
     let mut positions = motion.first.into_iter().chain(motion.segments.iter().map(|segment| segment.end.position));
-    follow(law, normal_load, motion, |force, states| {
+    follow(law, normal_load, motion, states, |force, states| {
         points.extend(positions.next().map(|position| FrictionPoint { position, force, states: states.to_vec() }));
     })?;
     Ok(points)
@@ -212,11 +245,12 @@ pub fn friction_along<D: Scalar, L: BristleLaw<D> + ?Sized>(
 /// Relative tolerance (1): well below the accuracy of any measurement, and well above rounding.
 const TOLERANCE: f64 = 1e-13;
 
-/// Follows `motion` and gives `visit` the force and the states at each of its points.
+/// Follows `motion` from these `states` and gives `visit` the force and the states at each of its points.
 fn follow<D: Scalar, L: BristleLaw<D> + ?Sized>(
     law: &L,
     normal_load: D,
     motion: &PrescribedMotion<D>,
+    states: &[D],
     mut visit: impl FnMut(D, &[D]),
 ) -> Result<(), SimulationError> {
     require_odd(law)?;
@@ -232,9 +266,11 @@ fn follow<D: Scalar, L: BristleLaw<D> + ?Sized>(
     let Some(first) = motion.first else { return Ok(()) };
     let mut begin = vec![zero; field.size()];
     begin[0] = first;
+    begin[2..].copy_from_slice(states);
     let mut run = Run::new(field, begin, TOLERANCE, recorder);
-    visit(zero, &run.step.begin[2..]);
     let (mut before, mut rates) = (0.0, vec![zero; law.states()]);
+    law.rate(zero, states, Regime::ALL_HOLD, &mut rates);
+    visit(normal_load * law.coefficient(zero, states, &rates), &run.step.begin[2..]);
     for segment in &motion.segments {
         let duration = segment.duration.value();
         let piece = Piece::line_from_zero(segment.acceleration, segment.jerk);
