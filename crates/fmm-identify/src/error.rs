@@ -76,6 +76,14 @@ pub enum IdentifyError {
         /// Cause.
         source: FitError,
     },
+    /// A record of a validation could not be predicted.
+    #[error("record {record} that is not fitted: {source}")]
+    NotPredicted {
+        /// Number of the record, from 1.
+        record: usize,
+        /// Cause.
+        source: Box<IdentifyError>,
+    },
     /// There is no posterior.
     #[cfg(feature = "sampler")]
     #[error("the posterior of {law} could not be found: {source}")]
@@ -96,6 +104,11 @@ pub enum IdentifyError {
 }
 
 impl IdentifyError {
+    /// True if another law may be fitted to the same experiments all the same.
+    pub(crate) fn is_of_law(&self) -> bool {
+        matches!(self, Self::Fit { .. } | Self::Simulation { .. } | Self::TooFew { .. } | Self::OutOfRange { .. })
+    }
+
     /// Something that has to be given.
     pub(crate) fn missing(what: impl Into<String>) -> Self {
         Self::Missing { what: what.into() }

@@ -1,11 +1,11 @@
 //! Fit of forces along motions: start values, and the best end of the fits from them.
 
-use fmm_fit::{EvaluationError, Fit, Options, solve_observed};
+use fmm_fit::{EvaluationError, Fit, Options, Outcome, solve_observed};
 use fmm_friction::Role;
 
 use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
-use crate::fit::stages::Observer;
+use crate::fit::stages::{Begin, Observer, lowest};
 use crate::law::dimension::{Scales, is_force};
 use crate::linear_algebra::Span;
 use crate::problem::Problem;
@@ -24,39 +24,53 @@ const MOST_STARTS: usize = 3;
 /// Iterations after which a fit that has not ended creeps.
 const MOST_ITERATIONS: usize = 100;
 
-/// The best fit of a `problem` of these `forces`. A fit that leaves only noise ends the search.
+/// The best fit of a `problem` of these `forces`, begun where the records say or at the starts that `begin` has. A fit
+/// that leaves only noise ends the search; one that cannot begin leaves the others.
 pub(crate) fn fit_forces(
     problem: &Problem<'_>,
     forces: &ForceProblem<'_>,
+    begin: Begin<'_>,
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let (law, records) = (forces.law(), forces.records());
     let options = options.clone().with_max_iterations(options.max_iterations().min(MOST_ITERATIONS));
-    let beginnings: Option<Vec<ForceRecord>> = records.iter().map(ForceRecord::beginning).collect();
-    let begun = match &beginnings {
-        Some(beginnings) => Some(Problem::of(&problem.candidate(), problem.machine, beginnings)?),
-        None => None,
+    let starts = if let Begin::From(starts) = begin {
+        lowest(problem, starts(problem), MOST_STARTS)
+    } else {
+        let beginnings: Option<Vec<ForceRecord>> = records.iter().map(ForceRecord::beginning).collect();
+        let begun = match &beginnings {
+            Some(beginnings) => Some(Problem::of(&problem.candidate(), problem.machine, beginnings)?),
+            None => None,
+        };
+        let begun = begun.as_ref().unwrap_or(problem);
+        let found = begun.forces().map_or_else(|| Ok(Vec::new()), |forces| starts(&forces));
+        found.map_err(|error| IdentifyError::simulation(law.name, error))?
     };
-    let begun = begun.as_ref().unwrap_or(problem);
-    let found = begun.forces().map_or_else(|| Ok(Vec::new()), |forces| starts(&forces));
-    let mut best: Option<Fit> = None;
-    for start in found.map_err(|error| IdentifyError::simulation(law.name, error))? {
-        let fit = solve_observed(problem, &start, &options, |progress| observer(progress))
-            .map_err(|source| IdentifyError::Fit { law: law.name, source })?;
+    let (mut best, mut failure): (Option<Fit>, _) = (None, None);
+    for start in starts {
+        let fit = match solve_observed(problem, &start, &options, |progress| observer(progress)) {
+            Ok(fit) => fit,
+            Err(source) => {
+                failure = Some(IdentifyError::Fit { law: law.name, source });
+                continue;
+            }
+        };
         let is_noise = !ResidualStructure::of(&fit, records).is_structured();
+        let is_cancelled = fit.outcome() == Outcome::Cancelled;
         if best.as_ref().is_none_or(|best| fit.sum_of_squares() < best.sum_of_squares()) {
             best = Some(fit);
         }
-        if is_noise && best.as_ref().is_some_and(|best| best.outcome().is_success()) {
+        if is_cancelled || is_noise && best.as_ref().is_some_and(|best| best.outcome().is_success()) {
             break;
         }
     }
-    best.ok_or_else(|| IdentifyError::missing("a model without a parameter cannot be fitted"))
+    let nothing = || IdentifyError::missing("a model without a parameter cannot be fitted");
+    best.ok_or_else(|| failure.unwrap_or_else(nothing))
 }
 
-/// Values to begin a fit of `forces` with, the nearest to the records first.
-fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
+/// Values that the law of `forces` typically has in such records, its bends at each of several places.
+pub(crate) fn typical(forces: &ForceProblem<'_>) -> Vec<Vec<f64>> {
     let law = forces.law();
     let mut positions = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut speed, mut load, mut count): (f64, f64, usize) = (0.0, 0.0, 0);
@@ -73,8 +87,8 @@ fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
     // A tenth of the force at the highest speed is viscous.
     let scales = |sharpness| Scales { length, speed, friction, damping: 0.1 * friction / speed, sharpness };
     let has_bends = law.fitted().any(|parameter| law.bends(parameter));
-    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
-    for sharpness in SHARPNESS.into_iter().take(if has_bends { SHARPNESS.len() } else { 1 }) {
+    let sharpnesses = SHARPNESS.into_iter().take(if has_bends { SHARPNESS.len() } else { 1 });
+    let of_sharpness = |sharpness| {
         let mut values: Vec<f64> = law.fitted().map(|parameter| scales(sharpness).typical(law, parameter)).collect();
         values.resize(forces.parameters.len(), 0.0);
         for (place, deflection) in forces.first_deflections() {
@@ -83,7 +97,24 @@ fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
         for (value, parameter) in values.iter_mut().zip(forces.parameters) {
             *value = parameter.bounds().clamp(*value);
         }
-        found.push(levelled(forces, values)?);
+        values
+    };
+    sharpnesses.map(of_sharpness).collect()
+}
+
+/// Values to begin a fit of `forces` with, the nearest to the records first. Those at which the law has no value are
+/// left out, unless there are no others.
+fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
+    let mut failure = None;
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    for values in typical(forces) {
+        match levelled(forces, values) {
+            Ok(start) => found.push(start),
+            Err(error) => failure = Some(error),
+        }
+    }
+    if let (true, Some(error)) = (found.is_empty(), failure) {
+        return Err(error);
     }
     let nearest = |found: &mut Vec<(f64, Vec<f64>)>| found.sort_by(|a, b| a.0.total_cmp(&b.0));
     nearest(&mut found);
@@ -97,7 +128,7 @@ fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
                 let mut values = best.clone();
                 values[place] += width * f64::from(step) / f64::from(DELAYS + 1);
                 if forces.parameters[place].bounds().contains(values[place]) {
-                    found.push(levelled(forces, values)?);
+                    found.extend(levelled(forces, values));
                 }
             }
             nearest(&mut found);

@@ -75,9 +75,6 @@ pub(crate) fn fit_begun(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
-    if let Some(forces) = problem.forces() {
-        return fit_forces(problem, &forces, options, observer);
-    }
     if let Begin::Extended(special) = begin {
         return best_fit(problem, problem.name(), &[problem.extended(&special.fit)], options, observer);
     }
@@ -98,6 +95,9 @@ fn fit_by_own(
     options: &Options,
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
+    if let Some(forces) = problem.forces() {
+        return fit_forces(problem, &forces, begin, options, observer);
+    }
     match begin {
         Begin::From(starts) => fit_from(&problem.clone().bending_in_sight(), starts, options, observer),
         _ => fit_in_stages(problem, options, observer),
@@ -150,7 +150,7 @@ fn fit_from(
 }
 
 /// Those of `starts` with the smallest sums of squares, at most `count`.
-fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
+pub(super) fn lowest(problem: &Problem<'_>, starts: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
     if starts.len() <= count {
         return starts;
     }

@@ -17,6 +17,11 @@ pub(super) struct ForceResults {
     units: [String; 2],
     /// One flag per residual: it counts.
     counts: Vec<bool>,
+    /// Samples of all records that have a residual, and the number of all samples.
+    places: Vec<usize>,
+    samples: usize,
+    /// Friction in the mean of the way of the record that a force drives, in the unit of the force, if there is one.
+    driving: Option<f64>,
     /// Degrees of freedom of all residuals over those of the counting ones (1).
     pub(super) spread: f64,
 }
@@ -26,7 +31,7 @@ pub(super) struct ForceResults {
 pub struct Validation {
     /// Root mean square of the predicted force less the measured one, in the unit of the force.
     pub rms: f64,
-    /// Standard deviation of the force, in its unit.
+    /// Standard deviation of the force, in its unit; of a motion that goes one way, its root mean square.
     pub force: f64,
 }
 
@@ -34,6 +39,16 @@ impl Validation {
     /// The one over the other (1); `None` if the force does not change.
     pub fn share(&self) -> Option<f64> {
         (self.force > 0.0).then(|| self.rms / self.force)
+    }
+
+    /// The warning about a prediction by `law` that is no better than none, if it is not.
+    pub fn warning(&self, law: &str) -> Option<Warning> {
+        self.worse_than_none(law, false)
+    }
+
+    fn worse_than_none(&self, law: &str, is_fitted: bool) -> Option<Warning> {
+        let share = self.share().filter(|share| *share >= 1.0)?;
+        Some(Warning::WorseThanNone { law: law.to_owned(), share, is_fitted })
     }
 }
 
@@ -46,7 +61,27 @@ impl ForceResults {
         let rank = fit.rank().min(counted.saturating_sub(1));
         let spread = (all - fit.rank().min(all)) as f64 / (counted - rank).max(1) as f64;
         let units = [records[0].position_unit(), records[0].force_unit()].map(str::to_owned);
-        Self { deviation: deviation(records), units, counts, spread }
+        let (mut places, mut samples) = (Vec::with_capacity(all), 0);
+        for (record, compared) in records.iter().zip(&forces.forces.samples) {
+            places.extend(compared.clone().map(|row| samples + row));
+            samples += record.len();
+        }
+        let driving = records.iter().find_map(ForceRecord::driving_friction);
+        Self { deviation: deviation(records), units, counts, places, samples, driving, spread }
+    }
+
+    /// The `residuals` that count, each at its sample among those of all records.
+    pub(super) fn at_samples(&self, residuals: &[f64]) -> Vec<Option<f64>> {
+        let mut all = vec![None; self.samples];
+        for ((place, residual), counts) in self.places.iter().zip(residuals).zip(&self.counts) {
+            all[*place] = counts.then_some(*residual);
+        }
+        all
+    }
+
+    /// Samples of all records that have a residual.
+    pub(super) fn places(&self) -> &[usize] {
+        &self.places
     }
 }
 
@@ -55,6 +90,12 @@ impl Warning {
     pub(super) fn of_force(identification: &Identification, unit: &str) -> Vec<Self> {
         let (structure, inflation) = (identification.structure, identification.covariance.inflation);
         let mut warnings = Vec::new();
+        if let Some(forces) = &identification.forces {
+            let driving = forces.driving.map(|friction| Self::DrivesMotion { friction, unit: unit.to_owned() });
+            warnings.extend(driving);
+            let fitted = Validation { rms: identification.rms_residual(), force: forces.deviation };
+            warnings.extend(fitted.worse_than_none(identification.law(), true));
+        }
         if structure.is_structured() {
             let (residual, noise, unit) = (structure.residual, structure.noise, unit.to_owned());
             warnings.push(Self::StructuredResiduals { residual, noise, unit, inflation });
@@ -76,13 +117,25 @@ impl Identification {
         self.forces.as_ref().map(|forces| forces.counts.as_slice())
     }
 
+    /// The residual at each sample of the records; `None` where a force along a motion has none that counts.
+    pub(super) fn residuals_at_samples(&self) -> Vec<Option<f64>> {
+        let residuals = self.fit().residuals();
+        let all = || residuals.iter().copied().map(Some).collect();
+        self.forces.as_ref().map_or_else(all, |forces| forces.at_samples(residuals))
+    }
+
+    /// The sample of each residual among those of the records; `None` if each has one.
+    pub(super) fn places(&self) -> Option<&[usize]> {
+        self.forces.as_ref().map(ForceResults::places)
+    }
+
     /// Degrees of freedom of all residuals over those of the counting ones (1).
     pub(super) fn spread(&self) -> f64 {
         self.forces.as_ref().map_or(1.0, |forces| forces.spread)
     }
 
-    /// Root mean square of the residuals over the standard deviation of the forces along motions (1); `None` for an
-    /// identification of vibrations, or if the forces do not change.
+    /// Root mean square of the residuals over the standard deviation of the forces along motions (1), or over their root
+    /// mean square if all go one way; `None` for an identification of vibrations, or if the forces do not change.
     pub fn share_of_force(&self) -> Option<f64> {
         let force = self.forces.as_ref()?.deviation;
         Validation { rms: self.rms_residual(), force }.share()

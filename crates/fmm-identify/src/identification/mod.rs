@@ -261,7 +261,7 @@ impl Identification {
     }
 
     /// Number of residuals that count.
-    pub(crate) fn samples(&self) -> usize {
+    pub fn samples(&self) -> usize {
         let all = self.fitted.fit.residuals().len();
         self.counts().map_or(all, |counts| counts.iter().filter(|counts| **counts).count())
     }

@@ -4,11 +4,11 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, RecordSummary};
 use crate::finding::{Finding, Source};
-use crate::identification::Identification;
 use crate::identification::beside::closest;
+use crate::identification::{Identification, Validation};
 use crate::judgement::change::{FrictionChange, asks_for_change};
 use crate::judgement::filtering::{filtering_sensor, other_quantity};
-use crate::judgement::rules::{FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
+use crate::judgement::rules::{EQUAL_PREDICTION, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::{Judgement, shortcomings};
 use crate::quantities::derived::OF_DAMPING;
@@ -28,6 +28,8 @@ use crate::warning::Warning;
 /// If a simple law is true, about one simulated record of seven stays undecided (example `judgement`). The
 /// uncertainties of the preferred law include the difference to the laws that are left, by their probability.
 ///
+/// With forces to which nothing was fitted, the law that predicts them best is preferred.
+///
 /// `Display` gives the report.
 #[derive(Debug, Clone)]
 pub struct Comparison {
@@ -40,6 +42,7 @@ pub struct Comparison {
     /// Names of the laws that the friction over the speed excludes without a fit.
     pub(crate) excluded: Vec<String>,
     pub(crate) is_complete: bool,
+    validations: Vec<Vec<Validation>>,
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -49,15 +52,19 @@ pub(crate) fn explains(identifications: &[Identification]) -> bool {
 }
 
 impl Comparison {
-    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have
-    /// none.
+    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have none,
+    /// and by the `validations` of each with forces that were not fitted, of which there may be none.
     pub(crate) fn of(
         decays: &[Experiment],
         candidates: &[Candidate],
         mut identifications: Vec<Identification>,
+        validations: Vec<Vec<Validation>>,
     ) -> Result<Self, IdentifyError> {
         let mut judgement = Judgement::of(candidates, &identifications)
             .ok_or_else(|| IdentifyError::missing("there is no law to compare; give at least one candidate"))?;
+        let fits_best = judgement.preferred;
+        judgement.preferred = predicts_best(&validations, fits_best);
+        judgement.is_decided &= judgement.preferred == fits_best;
         let preferred = judgement.preferred;
         let others = unfinished(candidates, &identifications);
         judgement.is_decided &= others.is_empty();
@@ -82,9 +89,14 @@ impl Comparison {
         let mut warnings = identifications[preferred].warnings().to_vec();
         warnings.extend(others);
         warnings.extend(widened);
-        if !judgement.is_decided {
+        if preferred != fits_best {
+            let (fits, predicts) = (candidates[fits_best].name(), candidates[preferred].name());
+            warnings.push(Warning::OtherPredicts { fits, predicts });
+        } else if !judgement.is_decided {
             warnings.push(Warning::Undecided);
         }
+        let predicted = validations.get(preferred).into_iter().flatten();
+        warnings.extend(predicted.filter_map(|said| said.warning(identifications[preferred].law())));
         let others = identifications.iter().enumerate().filter(|(index, _)| *index != preferred);
         let negative = |warning: &&Warning| matches!(warning, Warning::NegativeDamping { .. });
         warnings.extend(others.flat_map(|(_, found)| found.warnings().iter().filter(negative).cloned()));
@@ -105,9 +117,20 @@ impl Comparison {
             change,
             excluded: Vec::new(),
             is_complete: true,
+            validations,
             warnings,
         })
     }
+}
+
+/// Place of the law that predicts best what was not fitted; the one at `preferred` if it predicts as well, or if there
+/// is nothing to predict.
+fn predicts_best(validations: &[Vec<Validation>], preferred: usize) -> usize {
+    let squares: Vec<f64> =
+        validations.iter().map(|records| records.iter().map(|record| record.rms * record.rms).sum()).collect();
+    let best = (0..squares.len()).min_by(|a, b| squares[*a].total_cmp(&squares[*b]));
+    let is_as_good = |best: &usize| squares[preferred] <= squares[*best] * EQUAL_PREDICTION * EQUAL_PREDICTION;
+    best.filter(|best| !is_as_good(best)).unwrap_or(preferred)
 }
 
 /// Warning about a level and a straight line that misses the record by far and gives less than half of the friction at
@@ -290,6 +313,12 @@ impl Comparison {
     /// is far from all that they can state.
     pub fn excluded(&self) -> &[String] {
         &self.excluded
+    }
+
+    /// Agreement of each law, in the order given, with each record of forces that was
+    /// [not fitted](crate::Inquiry::validated_by).
+    pub fn validations(&self) -> &[Vec<Validation>] {
+        &self.validations
     }
 
     /// All laws of the search were tried; false if a time limit ended it.

@@ -9,10 +9,12 @@ use fmm_friction::{FamilyVisitor, LawFamily};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
+use crate::experiment::force::ForceRecord;
 use crate::experiment::{Experiment, Experiments};
+use crate::fit::nested::nested_starts;
 use crate::fit::stages::Begin;
-use crate::identification::Identification;
 use crate::identification::beside::closest;
+use crate::identification::{Identification, Validation};
 use crate::judgement::change::with_change;
 use crate::judgement::comparison::explains;
 use crate::judgement::trials::{Families, Family};
@@ -21,6 +23,7 @@ use crate::machine::Machine;
 use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::threads::{is_past, on_all_threads};
+use crate::warning::Warning;
 
 /// Observer of the trial steps of fits by laws of these names; a break ends a fit.
 type Observer<'a> = dyn FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send + 'a;
@@ -150,6 +153,15 @@ pub struct Inquiry<'a> {
     threads: Option<usize>,
     pub(super) families: Vec<Family>,
     pub(super) held: Vec<(Option<String>, String, f64)>,
+    validation: &'a [ForceRecord],
+}
+
+/// Fits of several laws to the same experiments, with warnings about those that could not be fitted.
+#[derive(Default)]
+struct Fits {
+    candidates: Vec<Candidate>,
+    identifications: Vec<Identification>,
+    left_out: Vec<Warning>,
 }
 
 impl<'a> Inquiry<'a> {
@@ -164,6 +176,7 @@ impl<'a> Inquiry<'a> {
             threads: None,
             families: Vec::new(),
             held: Vec::new(),
+            validation: &[],
         }
     }
 
@@ -180,8 +193,9 @@ impl<'a> Inquiry<'a> {
         Self { observer: Mutex::new(Box::new(observer)), ..self }
     }
 
-    /// The same with an end after `limit`: a fit that goes on is cancelled. In a search no further law begins, a law
-    /// that is being fitted is left out, and the first laws are fitted all the same.
+    /// The same with an end after `limit`: a fit that goes on is cancelled, and gives the best that it had; of several
+    /// laws that are compared, each gets an equal share of what is left. In a search no further law begins, a law that
+    /// is being fitted is left out, and the first laws are fitted all the same.
     #[must_use]
     pub fn within(self, limit: Duration) -> Self {
         Self { time_limit: Some(limit), ..self }
@@ -210,6 +224,13 @@ impl<'a> Inquiry<'a> {
         self
     }
 
+    /// The same with `records` of forces to which nothing is fitted. A [comparison](Self::among) prefers the law that
+    /// predicts them best.
+    #[must_use]
+    pub fn validated_by(self, records: &'a [ForceRecord]) -> Self {
+        Self { validation: records, ..self }
+    }
+
     /// The identification by a law with its terms, as [`identify`] gives it.
     ///
     /// # Errors
@@ -219,13 +240,16 @@ impl<'a> Inquiry<'a> {
         self.on_pool(|| self.fit(&candidate, self.experiments, Begin::Anywhere, &self.options, end))
     }
 
-    /// The comparison of `candidates` by an identification each.
+    /// The comparison of `candidates` by an identification each. A law that cannot be fitted is left out, with a warning
+    /// that has the reason; a law that ends above a special case of it is fitted again from there.
     ///
-    /// Of forces along motions, two laws are compared at the samples that count for both.
+    /// Of forces along motions, two laws are compared at the samples that count for both, and by what each leaves at
+    /// others beyond its usual residual.
     ///
     /// # Errors
-    /// Those of [`identify`], [`IdentifyError::Missing`] without a candidate, and [`IdentifyError::Contradiction`] for
-    /// a candidate that is given twice.
+    /// Those of [`identify`] if no law can be fitted, [`IdentifyError::Missing`] without a candidate,
+    /// [`IdentifyError::Contradiction`] for a candidate that is given twice, and [`IdentifyError::NotPredicted`] for a
+    /// record of the validation.
     pub fn among(&self, candidates: &[Candidate]) -> Result<Comparison, IdentifyError> {
         let candidates: Vec<Candidate> = candidates.iter().map(|candidate| self.allowed(candidate)).collect();
         let candidates = candidates.as_slice();
@@ -234,25 +258,68 @@ impl<'a> Inquiry<'a> {
             return Err(IdentifyError::contradiction(format!("{twice} is given twice; leave one out")));
         }
         let end = self.end();
-        let fit = |experiments: Experiments<'_>| -> Result<Vec<Identification>, IdentifyError> {
-            let fit = |candidate| self.fit(candidate, experiments, Begin::Anywhere, &self.options, end);
-            let mut identifications = candidates.iter().map(fit).collect::<Result<Vec<_>, _>>()?;
-            self.follow_special_cases(candidates, &mut identifications, experiments, &self.options, end);
-            Ok(identifications)
-        };
         self.on_pool(|| {
-            let identifications = fit(self.experiments)?;
-            let Experiments::Vibrations(decays) = self.experiments else {
-                return Comparison::of(&[], candidates, identifications);
-            };
-            if let Some(drifting) = closest(&identifications).and_then(|found| found.with_drift(decays)) {
-                let with_drift = fit((&drifting).into())?;
-                if explains(&with_drift) {
-                    return Comparison::of(&drifting, candidates, with_drift);
+            let mut fitted = self.fit_each(candidates, self.experiments, end)?;
+            let mut decays: &[Experiment] = &[];
+            let drifting;
+            if let Experiments::Vibrations(own) = self.experiments {
+                decays = own;
+                drifting = closest(&fitted.identifications).and_then(|found| found.with_drift(own));
+                if let Some(drifting) = &drifting {
+                    let with_drift = self.fit_each(candidates, drifting.into(), end)?;
+                    if explains(&with_drift.identifications) {
+                        (decays, fitted) = (drifting, with_drift);
+                    }
                 }
             }
-            Comparison::of(decays, candidates, identifications)
+            let Fits { candidates, identifications, left_out } = fitted;
+            let validations = identifications.iter().map(|found| self.validations(found)).collect::<Result<_, _>>()?;
+            let mut comparison = Comparison::of(decays, &candidates, identifications, validations)?;
+            comparison.warnings.extend(left_out);
+            Ok(comparison)
         })
+    }
+
+    /// The fits of `candidates` to `experiments` until the `end`.
+    fn fit_each(
+        &self,
+        candidates: &[Candidate],
+        experiments: Experiments<'_>,
+        end: Option<Instant>,
+    ) -> Result<Fits, IdentifyError> {
+        let mut fitted = Fits::default();
+        let mut failure = None;
+        // A law of which one step takes longer than its share leaves the others theirs.
+        let share = end.map(|end| end.saturating_duration_since(Instant::now()) / candidates.len().max(1) as u32);
+        for candidate in candidates {
+            let end = share.and_then(|share| Instant::now().checked_add(share));
+            match self.fit(candidate, experiments, Begin::Anywhere, &self.options, end) {
+                Ok(found) => {
+                    fitted.candidates.push(candidate.clone());
+                    fitted.identifications.push(found);
+                }
+                Err(error) if error.is_of_law() => {
+                    fitted.left_out.push(Warning::left_out(&format!("the law {}", candidate.name()), &error));
+                    failure.get_or_insert(error);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        if let Some(error) = failure.filter(|_| fitted.candidates.is_empty()) {
+            return Err(error);
+        }
+        let Fits { candidates, identifications, .. } = &mut fitted;
+        self.follow_special_cases(candidates, identifications, experiments, &self.options, end);
+        Ok(fitted)
+    }
+
+    /// Agreement of `found` with each record of the validation.
+    fn validations(&self, found: &Identification) -> Result<Vec<Validation>, IdentifyError> {
+        let validate = |(record, number): (&ForceRecord, usize)| {
+            let named = |source| IdentifyError::NotPredicted { record: number, source: Box::new(source) };
+            found.validate(record).map_err(named)
+        };
+        self.validation.iter().zip(1..).map(validate).collect()
     }
 
     /// The `candidate` with friction that changes, where it is known how little it does.
@@ -278,8 +345,8 @@ impl<'a> Inquiry<'a> {
         work()
     }
 
-    /// Fits those of the `identifications` of vibrations again that a special case of their law fits better, from where
-    /// that one has ended; of two fits the better stays.
+    /// Fits those of the `identifications` again that a special case of their law fits better, from where that one has
+    /// ended; of two fits the better stays.
     pub(super) fn follow_special_cases(
         &self,
         candidates: &[Candidate],
@@ -288,13 +355,18 @@ impl<'a> Inquiry<'a> {
         options: &Options,
         end: Option<Instant>,
     ) {
-        if matches!(experiments, Experiments::Forces(_)) || is_past(end) {
+        if is_past(end) {
             return;
         }
         let missed = |place: usize| Some((place, better_special_case(place, candidates, identifications)?));
         let missed: Vec<_> = (0..candidates.len()).filter_map(missed).collect();
         let fit = |(place, special): (usize, usize)| {
-            let begin = Begin::Extended(&identifications[special].fitted);
+            let special = &identifications[special].fitted;
+            let starts = |problem: &Problem<'_>| nested_starts(problem, special);
+            let begin = match experiments {
+                Experiments::Forces(_) => Begin::From(&starts),
+                Experiments::Vibrations(_) => Begin::Extended(special),
+            };
             // A law that cannot begin there keeps its fit, and the sentence on it.
             Some((place, self.fit(&candidates[place], experiments, begin, options, end).ok()?))
         };

@@ -69,17 +69,21 @@ pub(crate) fn shortcomings(place: usize, candidates: &[Candidate], identificatio
     sentences
 }
 
-/// Place of the special case of the law at this place that fits best, if it fits better than the law.
-fn better_special_case(place: usize, candidates: &[Candidate], identifications: &[Identification]) -> Option<usize> {
+/// Place of a special case of the candidate at this place that fits better, which shows that the fit missed its lowest
+/// minimum.
+pub(crate) fn better_special_case(
+    place: usize,
+    candidates: &[Candidate],
+    identifications: &[Identification],
+) -> Option<usize> {
     let found = &identifications[place];
-    let sum = |other: &usize| identifications[*other].fit().sum_of_squares();
-    let least = sum(&place) * (1.0 - ROUNDING_OF_SQUARES) - found.floor();
+    let least = found.fit().sum_of_squares() * (1.0 - ROUNDING_OF_SQUARES) - found.floor();
     // Where other samples count, a special case may fit its own better.
-    let is_better = |other: &usize| {
-        let is_special = candidates[*other].is_nested_in(&candidates[place]);
-        is_special && sum(other) < least && found.counts_as(&identifications[*other])
-    };
-    (0..candidates.len()).filter(is_better).min_by(|one, other| sum(one).total_cmp(&sum(other)))
+    let is_better = |other: &Identification| found.counts_within(other) && other.squares_within(found) < least;
+    let is_special = |special: &usize| candidates[*special].is_nested_in(&candidates[place]);
+    let better = (0..candidates.len()).filter(is_special).filter(|special| is_better(&identifications[*special]));
+    better
+        .min_by(|a, b| identifications[*a].squares_within(found).total_cmp(&identifications[*b].squares_within(found)))
 }
 
 impl Judgement {
@@ -89,10 +93,10 @@ impl Judgement {
     /// D_i = (S_i − S_b)/σ_i²,     σ_i² = δᵀΣδ/δᵀδ,     δ = r_i − r_b
     /// ```
     ///
-    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. Samples that do not
-    /// count for one of the two laws are left out of S and δ, and b is the law that fewest others fit better than. σ_i²
-    /// is the variance of that noise in the direction in which the two laws differ: twice the logarithm of a ratio of
-    /// likelihoods for correlated noise. It depends on the two laws alone, and not on how often the record was sampled,
+    /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. At samples that count
+    /// for one of the two laws alone, S counts what it leaves there beyond its usual residual, and δ nothing; b is the
+    /// law that fewest others fit better than. σ_i² is the variance of that noise in the direction in which the two
+    /// laws differ: twice the logarithm of a ratio of likelihoods for correlated noise. It depends on the two laws alone, and not on how often the record was sampled,
     /// nor on other candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the
     /// best law has more parameters, at least one; times the positions at which a best law that leaps can leap, each of
     /// which is a try (Bonferroni).

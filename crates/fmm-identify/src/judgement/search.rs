@@ -84,7 +84,7 @@ impl Inquiry<'_> {
         let dropped = found.drop_unfinished(&self.at(SearchStage::Simple));
         tests.retain(|test| test.uncertainty.is_finite());
         left_out.extend(found.failures());
-        let mut comparison = Comparison::of(decays, &found.candidates, found.identifications)?;
+        let mut comparison = Comparison::of(decays, &found.candidates, found.identifications, Vec::new())?;
         comparison.score_tests = tests;
         comparison.excluded = found.excluded;
         comparison.warnings.extend(left_out);

@@ -118,8 +118,8 @@ impl Problem<'_> {
     /// The same problem by parameters that a fit finds in fewer steps; `None` for a law without such parameters, and
     /// where one that only this problem has is held.
     pub(crate) fn recast(&self) -> Option<Problem<'_>> {
-        let recast = (self.law().recast)()?;
-        Problem::of(&Candidate { law: recast.family, ..self.candidate() }, self.machine, &*self.experiments).ok()
+        let recast = Candidate { law: (self.law().recast)()?.family, ..self.candidate() };
+        Problem::of(&recast, self.machine, self.records()).ok()
     }
 
     /// The values of this problem where those of the [recast](Self::recast) one have been `found`.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use fmm_fit::{Estimate, Fit};
-use fmm_friction::Role;
+use fmm_friction::{LawParameter, Role};
 use fmm_model::Parameter;
 
 use super::Problem;
@@ -11,6 +11,7 @@ use crate::candidate::Candidate;
 use crate::experiment::Experiment;
 use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
+use crate::law::Law;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::term::Term;
 use crate::quantities::table::{Knowledge, Place, Row, mass_of_stiffness};
@@ -154,6 +155,40 @@ impl Problem<'_> {
     pub(crate) fn extended(&self, fit: &Fit) -> Vec<f64> {
         let value = |parameter: &Parameter| fit.estimate(parameter.name()).map_or(0.0, Estimate::value);
         self.clamped(&self.parameters.iter().map(value).collect::<Vec<_>>())
+    }
+
+    /// The `start` with the findings of a `special` case of the law: its level, and all that has a name in both. Parts
+    /// above a level, and terms that the special case lacks, are zero; parameters at whose values the law is the special
+    /// case have these.
+    pub(crate) fn nested(&self, special: &Fitted, start: &[f64]) -> Vec<f64> {
+        let (law, other) = (self.law(), &special.model.law);
+        let level = |law: &Law| {
+            let parameter = law.level().and_then(|level| law.fitted().nth(level))?;
+            Some(self.table.units.fitted(parameter, self.table.form).name().to_owned())
+        };
+        let (own_level, their_level) = (level(law), level(other));
+        let needed = law.special_cases.iter().find(|case| Some(case.law()) == other.dry_name());
+        let needed = |parameter: &LawParameter| {
+            let named = |(name, _): &&(&str, f64)| *name == parameter.parameter().name();
+            needed.and_then(|case| case.needed().iter().find(named)).map(|(_, value)| *value)
+        };
+        let found = |name: &str| special.fit.estimate(name).map(Estimate::value);
+        let of_law: Vec<&LawParameter> = law.fitted().collect();
+        let values = self.table.rows.iter().zip(&self.parameters).zip(start).map(|((row, parameter), start)| {
+            let is_level = own_level.as_deref() == Some(parameter.name());
+            let counterpart = their_level.as_deref().filter(|_| is_level);
+            let known = found(parameter.name()).or_else(|| counterpart.and_then(found));
+            let missing = || match row.place {
+                Place::Law(number) => match of_law[number].role() {
+                    Role::LevelAbove | Role::Excess => 0.0,
+                    _ => needed(of_law[number]).unwrap_or(*start),
+                },
+                Place::Term(_) | Place::Channel(_) => 0.0,
+                _ => *start,
+            };
+            known.unwrap_or_else(missing)
+        });
+        self.clamped(&values.collect::<Vec<_>>())
     }
 
     /// Start values that continue a fit of `simple`, which has a level and a viscous part: the same losses, put into

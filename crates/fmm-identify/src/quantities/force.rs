@@ -13,6 +13,23 @@ use crate::quantities::table::{Builder, Knowledge, Place, Table};
 /// Samples of delay that are looked for unless a longest delay is given.
 const SAMPLES_OF_DELAY: f64 = 20.0;
 
+/// Refuses steady states without a time for a law or a term that depends on it.
+fn require_timeless(candidate: &Candidate) -> Result<(), IdentifyError> {
+    let Candidate { law, terms } = candidate;
+    let needs = |what: &str| {
+        IdentifyError::contradiction(format!(
+            "{what} depends on time or position, of which steady states have none; take a law of the speed, damping and zero, \
+             or give the times"
+        ))
+    };
+    if !law.is_of_speed() {
+        return Err(needs(law.name));
+    }
+    let of_time = [Term::Inertia, Term::Stiffness, Term::Gravity, Term::Delay];
+    let term = of_time.into_iter().find(|term| terms.has(*term)).and_then(Term::name);
+    term.map_or(Ok(()), |name| Err(needs(name)))
+}
+
 /// Refuses records that do not go together, or that lack something that the `terms` need.
 fn require_records(terms: &Terms, records: &[ForceRecord]) -> Result<(), IdentifyError> {
     let first = records.first();
@@ -58,6 +75,9 @@ impl Table {
         }
         family.require_units()?;
         require_records(&terms, records)?;
+        if records.iter().any(ForceRecord::is_timeless) {
+            require_timeless(candidate)?;
+        }
         let first = &records[0];
         let units = Units::new(first.position_unit(), first.force_unit());
         let form = if first.loads.is_some() { Form::Coefficient } else { Form::Force };

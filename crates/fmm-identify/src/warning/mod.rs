@@ -55,6 +55,29 @@ pub enum Warning {
         /// The law that explains them.
         law: String,
     },
+    /// A force along a motion drives it: friction would be negative.
+    DrivesMotion {
+        /// Friction in the mean of the way, in the unit of the force.
+        friction: f64,
+        /// Unit of the force.
+        unit: String,
+    },
+    /// A model of a force is off by as much as the force itself, or more.
+    WorseThanNone {
+        /// Name of the law.
+        law: String,
+        /// Residual over the force (1).
+        share: f64,
+        /// True for the records that were fitted, false for one that was predicted.
+        is_fitted: bool,
+    },
+    /// Another law predicts the records that were not fitted better than the one that fits best.
+    OtherPredicts {
+        /// Name of the law that fits best.
+        fits: String,
+        /// Name of the law that predicts best, which is preferred.
+        predicts: String,
+    },
     /// The amplitude does not fall.
     NoDecay,
     /// Few half swings: friction and damping rest on little.

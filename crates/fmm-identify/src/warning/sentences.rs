@@ -1,16 +1,16 @@
-//! Sentences of warnings about disturbances of a record and about impacts.
+//! Sentences of warnings about disturbances of a record, about impacts and about forces along motions.
 
 use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::warning::Warning;
+use crate::warning::{Warning, to_three_digits};
 
 /// Factor of the uncertainties that is worth a word (1).
 const NOTABLE: f64 = 1.1;
 
 impl Warning {
-    /// The sentences of these warnings; nothing for others.
+    /// The sentences of these warnings and of those about forces along motions; nothing for others.
     pub(crate) fn write_of_disturbances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FurtherRelease { time } => write!(
@@ -109,6 +109,35 @@ impl Warning {
             Self::Undecided => write!(
                 f,
                 "the record does not decide between the laws that are left; the simplest of those that agree well with it is shown as preferred"
+            ),
+            _ => self.write_of_forces(f),
+        }
+    }
+
+    /// The sentence of a warning that only forces along motions give; nothing for others.
+    fn write_of_forces(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DrivesMotion { friction, unit } => write!(
+                f,
+                "the force drives the motion: turn its sign (`--turn-sign` of `fmm force`, `ForceRecord::with_turned_sign`); in the mean \
+                 of the way friction would be {} {unit}, and no friction is negative",
+                to_three_digits(*friction)
+            ),
+            Self::WorseThanNone { law, share, is_fitted } => {
+                let (said, remedy) = if *is_fitted {
+                    ("fits the force", "look at columns, signs and units, or add what else acts, such as zero")
+                } else {
+                    ("predicts a record that was not fitted", "the model does not hold there")
+                };
+                write!(
+                    f,
+                    "{law} {said} with an error of {} % of the force, which is no better than none: {remedy}",
+                    to_three_digits(100.0 * share)
+                )
+            }
+            Self::OtherPredicts { fits, predicts } => write!(
+                f,
+                "{fits} fits best, but {predicts} predicts best what was not fitted, and is preferred for that"
             ),
             _ => Ok(()),
         }

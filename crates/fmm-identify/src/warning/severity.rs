@@ -28,6 +28,9 @@ impl Warning {
             | Self::PeriodDependsOnAmplitude { .. }
             | Self::Implausible { .. }
             | Self::OtherQuantity { .. }
+            | Self::DrivesMotion { .. }
+            | Self::WorseThanNone { .. }
+            | Self::OtherPredicts { .. }
             | Self::NoDecay
             | Self::Saturated { .. }
             | Self::OffsetStep { .. }

@@ -1,5 +1,7 @@
 //! Forces along motions: every law comes back out of what it makes of a motion, with its uncertainty.
 
+use std::f64::consts::PI;
+
 use fmm_friction::{BristleLaw, Coulomb, Dahl, FamilyVisitor, LawFamily, LawVisitor, SlidingLaw, family_named};
 use fmm_identify::{
     Candidate, ForceRecord, Identification, IdentifyError, Inquiry, Known, Machine, Warning, compare, identify,
@@ -485,4 +487,58 @@ fn velocities_that_are_not_the_slope_of_the_positions_are_refused() {
         let refused = with(scale, 0.0).unwrap_err().to_string();
         assert!(refused.contains("times the slope of the positions"), "{refused}");
     }
+}
+
+/// Laws with a delay and without have residuals at other samples, and are compared all the same; the more general law
+/// does not end above the special case.
+#[test]
+fn laws_with_a_delay_are_compared_with_those_without() {
+    let times: Vec<f64> = (0..2000).map(|i| 2e-3 * f64::from(i)).collect();
+    let forces: Vec<f64> = times
+        .iter()
+        .enumerate()
+        .map(|(i, time)| {
+            let velocity = motion(*time).velocity;
+            3.0 * velocity.signum() + 10.0 * velocity + 0.05 * (1.7 * (i * i) as f64).sin()
+        })
+        .collect();
+    let positions: Vec<f64> = times.iter().map(|time| motion(*time).position).collect();
+    let record = ForceRecord::of_positions(&times, &positions, &forces).unwrap();
+    let models = ["coulomb", "coulomb + linear", "coulomb + linear + delay", "dahl + linear"];
+    let models = models.map(|model| Candidate::named(model).unwrap());
+    let compared = compare(&Machine::per_unit_mass(), &[record], &models).unwrap();
+    let rms: Vec<f64> = compared.identifications().iter().map(Identification::rms_residual).collect();
+    assert!(rms[2] < 1.01 * rms[1] && rms[1] < 0.5 * rms[0], "{rms:?}");
+    assert!(compared.p_values()[0] < 0.002 && compared.p_values()[1] > 0.002, "{:?}", compared.p_values());
+    let unfinished =
+        |warning: &Warning| matches!(warning, Warning::OtherLaw { sentence, .. } if sentence.contains("missed"));
+    assert!(!compared.warnings().iter().any(unfinished), "{compared}");
+}
+
+/// A law that says a force at rest is judged by it there: it is not preferred for what it does
+/// elsewhere.
+#[test]
+fn a_law_is_judged_at_the_samples_that_it_alone_describes() {
+    let times: Vec<f64> = (0..4000).map(|i| 2e-3 * f64::from(i)).collect();
+    // Half of each period it rests, and the force there wanders between the levels.
+    let forces: Vec<f64> = times
+        .iter()
+        .enumerate()
+        .map(|(i, time)| {
+            let moves = time.rem_euclid(2.0) < 1.0;
+            let noise = 0.05 * (1.7 * (i * i) as f64).sin();
+            if moves { -3.0 + noise } else { 2.5 * (5.0 * time).sin() }
+        })
+        .collect();
+    let velocities: Vec<f64> = times
+        .iter()
+        .map(|time| if time.rem_euclid(2.0) < 1.0 { -0.02 * PI * (PI * time.rem_euclid(2.0)).sin() } else { 0.0 })
+        .collect();
+    let record = ForceRecord::of_velocities(&times, &velocities, &forces).unwrap();
+    let models = ["coulomb", "dahl"].map(|model| Candidate::named(model).unwrap());
+    let compared = compare(&Machine::per_unit_mass(), &[record], &models).unwrap();
+    let [coulomb, dahl] = [0, 1].map(|place| &compared.identifications()[place]);
+    assert!(coulomb.samples() < dahl.samples() && coulomb.rms_residual() < dahl.rms_residual(), "{compared}");
+    assert_eq!(compared.preferred().law(), "coulomb", "{compared}");
+    assert!(compared.p_values()[1] < 0.002, "{:?}", compared.p_values());
 }

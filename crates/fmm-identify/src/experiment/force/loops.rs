@@ -54,6 +54,9 @@ impl ForceRecord {
     /// Rows with which the motion goes on in the other direction; rests in between count to the direction before.
     pub(crate) fn reversals(&self) -> Vec<usize> {
         let mut reversals = Vec::new();
+        if self.is_timeless {
+            return reversals;
+        }
         let mut before = 0.0;
         for (row, velocity) in self.velocities().iter().enumerate() {
             if velocity.abs() > self.motion.rest_speed {

@@ -1,5 +1,6 @@
 //! Measured force along a measured motion: joints, tribometers, dampers.
 
+mod direction;
 mod loops;
 mod onset;
 mod smoothed;
@@ -37,6 +38,8 @@ pub struct ForceRecord {
     pub(crate) channels: Vec<(String, Vec<f64>)>,
     position_unit: String,
     force_unit: String,
+    /// True for steady states, of which neither time nor position is known.
+    is_timeless: bool,
 }
 
 /// Fewest samples of a record: a parabola through three gives the velocity.
@@ -79,11 +82,42 @@ impl ForceRecord {
         Self::along(times, positions, forces).moving_at(velocities)
     }
 
+    /// A record of steady states without a time: `forces` (N) at `velocities` (m/s), such as a measured Stribeck curve.
+    /// Their numbers stand for times, and nothing accelerates. Laws of the speed are fitted to it; a law with internal
+    /// state, and a term that depends on time or position, is refused.
+    ///
+    /// ```
+    /// use fmm_identify::{Candidate, ForceRecord, Machine, compare};
+    ///
+    /// let velocities: Vec<f64> = (1..40).map(|i| 0.01 * f64::from(i)).collect();
+    /// let forces: Vec<f64> = velocities.iter().map(|v| 2.0 + 30.0 * v).collect();
+    /// let record = ForceRecord::of_speeds(&velocities, &forces)?;
+    /// let compared = compare(&Machine::per_unit_mass(), &[record.clone()], &[Candidate::named("coulomb + linear")?])?;
+    /// assert!((compared.preferred().finding("friction_force").unwrap().value() - 2.0).abs() < 1e-9);
+    /// assert!(compare(&Machine::per_unit_mass(), &[record], &[Candidate::named("dahl")?]).is_err());
+    /// # Ok::<(), fmm_identify::IdentifyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`of_positions`](Self::of_positions).
+    pub fn of_speeds(velocities: &[f64], forces: &[f64]) -> Result<Self, IdentifyError> {
+        let times: Vec<f64> = (0..velocities.len()).map(|number| number as f64).collect();
+        require_times(&times)?;
+        require_series(&times, velocities, "velocity", "m/s")?;
+        require_series(&times, forces, "force", "N")?;
+        let nothing = vec![0.0; times.len()];
+        let mut record = Self::along(&times, nothing.clone(), forces).moving_at(velocities)?;
+        record.motion.accelerations = nothing;
+        record.is_timeless = true;
+        Ok(record)
+    }
+
     /// Forces along a motion without velocities yet.
     fn along(times: &[f64], positions: Vec<f64>, forces: &[f64]) -> Self {
         let motion = MeasuredMotion { times: times.to_vec(), positions, ..MeasuredMotion::default() };
         let (position_unit, force_unit) = ("m".to_owned(), "N".to_owned());
-        Self { motion, forces: forces.to_vec(), loads: None, channels: Vec::new(), position_unit, force_unit }
+        let (forces, loads, channels) = (forces.to_vec(), None, Vec::new());
+        Self { motion, forces, loads, channels, position_unit, force_unit, is_timeless: false }
     }
 
     fn moving_at(mut self, velocities: &[f64]) -> Result<Self, IdentifyError> {
@@ -239,6 +273,11 @@ impl ForceRecord {
         &self.force_unit
     }
 
+    /// True for steady states without a time, [`of_speeds`](Self::of_speeds).
+    pub fn is_timeless(&self) -> bool {
+        self.is_timeless
+    }
+
     /// Refuses the record beside others whose positions and forces are in these `units`.
     pub(crate) fn require_units(&self, units: [&str; 2]) -> Result<(), IdentifyError> {
         let own = [self.position_unit(), self.force_unit()];
@@ -300,11 +339,12 @@ impl ForceRecord {
     }
 }
 
-/// Standard deviation of the forces of all `records`, in their unit.
+/// Standard deviation of the forces of all `records`, in their unit; of motions that all go one way, where friction is
+/// in the mean force, the root mean square.
 pub(crate) fn deviation(records: &[ForceRecord]) -> f64 {
     let forces = || records.iter().flat_map(ForceRecord::forces);
     let count = forces().count() as f64;
-    let mean = forces().sum::<f64>() / count;
+    let mean = if records.iter().all(ForceRecord::goes_one_way) { 0.0 } else { forces().sum::<f64>() / count };
     (forces().map(|force| (force - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 

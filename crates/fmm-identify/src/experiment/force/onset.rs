@@ -53,6 +53,9 @@ impl ForceRecord {
     /// # Ok::<(), fmm_identify::IdentifyError>(())
     /// ```
     pub fn onsets(&self) -> Vec<Onset> {
+        if self.is_timeless() {
+            return Vec::new();
+        }
         let mut turns = vec![0];
         turns.extend(self.reversals());
         turns.push(self.len());
