@@ -1,4 +1,4 @@
-//! `fmm force` on tables whose truth is known: units in names and by options, and what is refused.
+//! `fmm force` on tables whose truth is known: columns, units in names and by options, signs, and what is refused.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -170,4 +170,171 @@ fn gaps_are_named_with_their_time() {
     with_gap(4);
     let (is_done, said) = fmm(&path, &["--model", "coulomb"]);
     assert!(is_done, "{said}");
+}
+
+/// A table of these columns, row by row.
+fn table_of(name: &str, columns: &[(&str, &[f64])]) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("force").join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let mut text = columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",");
+    for row in 0..columns[0].1.len() {
+        text.push('\n');
+        text += &columns.iter().map(|(_, values)| values[row].to_string()).collect::<Vec<_>>().join(",");
+    }
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// Times, positions, velocities, and forces (N) of 3 N of friction and 20 N s/m, with small noise.
+fn rubbed() -> [Vec<f64>; 4] {
+    let times: Vec<f64> = (0..1500).map(|i| 0.004 * f64::from(i)).collect();
+    let phase = |t: &f64| 3.0 * t + 0.4;
+    let velocities: Vec<f64> = times.iter().map(|t| 0.06 * phase(t).cos()).collect();
+    let noise = |i: usize| 0.02 * (1.7 * (i * i) as f64).sin();
+    let forces = velocities.iter().enumerate().map(|(i, v)| 3.0 * v.signum() + 20.0 * v + noise(i)).collect();
+    [times.clone(), times.iter().map(|t| 0.02 * phase(t).sin()).collect(), velocities, forces]
+}
+
+fn by(factor: f64, values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| factor * value).collect()
+}
+
+/// The columns that were taken are printed; one that a normal load is in by its name is not taken for the force.
+#[test]
+fn the_columns_are_said_and_a_normal_load_is_no_friction() {
+    let [t, x, _, f] = rubbed();
+    let (normal, micro) = (vec![5e6; t.len()], by(1e6, &f));
+    let both = table_of(
+        "normal.csv",
+        &[("t [s]", &t), ("x [mm]", &by(1e3, &x)), ("Normal [uN]", &normal), ("Lateral [uN]", &micro)],
+    );
+    let said = document(&both, &[]);
+    assert_eq!(said["columns"][0]["columns"]["force"], "Lateral [uN]", "{said}");
+    assert_eq!(said["columns"][0]["columns"]["position"], "x [mm]");
+    assert_eq!(said["columns"][0]["columns"]["unused"][0], "Normal [uN]");
+    assert!(said["warnings"][0].as_str().unwrap().contains("say so by --load"), "{said}");
+    let (_, text) = fmm(&both, &["--load", "Normal", "--model", "coulomb"]);
+    let line = "time \"t [s]\", position \"x [mm]\", force \"Lateral [uN]\", normal load \"Normal [uN]\"";
+    assert!(text.contains(line), "{text}");
+    // Friction in volts is nearer than a normal load in newtons.
+    let volts = table_of("volts.csv", &[("t [s]", &t), ("x [m]", &x), ("Fn [N]", &normal), ("Friction [V]", &f)]);
+    assert_eq!(document(&volts, &[])["columns"][0]["columns"]["force"], "Friction [V]");
+    let alone = table_of("alone.csv", &[("t [s]", &t), ("x [m]", &x), ("Normal force [N]", &f)]);
+    refused(&alone, &[], &["\"Normal force [N]\", which is across the motion by its name; name the force by --force"]);
+    let twice = table_of("two.csv", &[("t [s]", &t), ("x [m]", &x), ("A [N]", &f), ("B [N]", &f)]);
+    let (_, text) = fmm(&twice, &["--model", "coulomb"]);
+    assert!(
+        text.contains("\"A [N]\" was taken for the force, which may be \"B [N]\" as well: say it by --force"),
+        "{text}"
+    );
+    let named = table_of("named_force.csv", &[("t [s]", &t), ("x [m]", &x), ("A [N]", &f), ("force [N]", &f)]);
+    assert_eq!(document(&named, &[])["columns"][0]["columns"]["force"], "force [N]");
+    let still = table_of("still.csv", &[("t [s]", &t), ("F [N]", &f), ("Temp [degC]", &t)]);
+    refused(
+        &still,
+        &[],
+        &["no column is a position or a velocity, along which friction acts", "--position or --velocity"],
+    );
+}
+
+/// The reaction in place of the force is named, with the option that turns it.
+#[test]
+fn a_force_of_the_other_sign_is_named_and_turned() {
+    let [t, x, _, f] = rubbed();
+    let path = table_of("reaction.csv", &[("t [s]", &t), ("x [m]", &x), ("F [N]", &by(-1.0, &f))]);
+    let said = document(&path, &[]);
+    let warnings = said["models"][0]["warnings"].to_string();
+    assert!(warnings.contains("the force drives the motion: turn its sign (`--turn-sign`"), "{warnings}");
+    let said = document(&path, &["--turn-sign"]);
+    assert!((finding(&said, "friction_force").0 / 3.6 - 1.0).abs() < 0.2, "{said}");
+    assert!(!said["models"][0]["warnings"].to_string().contains("drives"), "{said}");
+}
+
+/// A prediction that is off by more than the force is named, and the law that predicts better is preferred.
+#[test]
+fn what_was_not_fitted_ranks_the_laws() {
+    let [t, x, _, f] = rubbed();
+    let fitted = table_of("fitted.csv", &[("t [s]", &t), ("x [m]", &x), ("F [N]", &f)]);
+    let other = table_of("other.csv", &[("t [s]", &t), ("x [m]", &x), ("F [N]", &by(-1.0, &f))]);
+    // Where friction is the other way, the law that fits worse is less wrong.
+    let (_, said) =
+        fmm(&fitted, &["--model", "coulomb+linear,viscous", "--validate", other.to_str().unwrap(), "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let rms = |model: usize| said["models"][model]["not_fitted"][0]["rms"].as_f64().unwrap();
+    assert!(rms(1) < rms(0), "{said}");
+    assert_eq!(
+        (&said["preferred"], &said["preferred_by"], &said["is_decided"]),
+        (&"viscous".into(), &"prediction".into(), &false.into())
+    );
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("coulomb + linear fits best, but viscous predicts best"), "{warnings}");
+    for model in 0..2 {
+        let warnings = said["models"][model]["warnings"].to_string();
+        assert!(warnings.contains("predicts a record that was not fitted with an error of"), "{warnings}");
+    }
+}
+
+/// Parts of a record, a rate in place of times, the tare of a load, and the units of workshops.
+#[test]
+fn parts_rates_and_tares_are_options() {
+    let [t, x, _, f] = rubbed();
+    let load = vec![14.0; t.len()];
+    let path = table_of(
+        "parts.csv",
+        &[("t [s]", &t), ("x [m]", &x), ("F [lb]", &by(1.0 / 4.448_221_615_260_5, &f)), ("N", &load)],
+    );
+    let said = document(&path, &["--from", "1", "--to", "4", "--load", "N", "--tare", "4"]);
+    assert_eq!(said["samples"], 751, "{said}");
+    let (coefficient, _) = finding(&said, "coefficient");
+    assert!((coefficient / 0.36 - 1.0).abs() < 0.2, "{coefficient}");
+    refused(&path, &["--from", "9"], &["no sample lies between --from and --to; the record goes from 0 s to 5.996 s"]);
+    let path = table_of("untimed.csv", &[("x [m]", &x), ("F [kip]", &by(1.0 / 4_448.221_615_260_5, &f))]);
+    refused(&path, &[], &["no column is the time", "--rate"]);
+    let said = document(&path, &["--rate", "250"]);
+    assert!((finding(&said, "friction_force").0 / 3.6 - 1.0).abs() < 0.2, "{said}");
+    // A gap outside of the part does not matter, and one inside is named with its time.
+    let mut gap = f.clone();
+    gap[1000] = f64::NAN;
+    let path = table_of("gap_outside.csv", &[("t [s]", &t), ("x [m]", &x), ("F [N]", &gap)]);
+    assert!(fmm(&path, &["--to", "3", "--model", "coulomb"]).0);
+    refused(&path, &["--from", "1"], &["is not finite at sample 1000 (at 4 s)"]);
+}
+
+/// A motion in one direction has no levels that differ by direction, and a curve over the speed no time.
+#[test]
+fn rotations_and_curves_have_defaults_of_their_own() {
+    let [t, ..] = rubbed();
+    let omega: Vec<f64> = t.iter().map(|t| 3.0 + t.sin()).collect();
+    let torque: Vec<f64> = omega.iter().map(|omega| 0.5 + 0.1 * omega).collect();
+    let turns = by(1.0 / std::f64::consts::TAU, &omega);
+    let path = table_of("rotation.csv", &[("t [s]", &t), ("omega [rev/s]", &turns), ("M [N m]", &torque)]);
+    let (is_done, said) = fmm(&path, &["--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert!(is_done && !said["models"].to_string().contains("asymmetry"), "{said}");
+    assert!(is_close(finding(&said, "friction_force").0, 0.5) && is_close(finding(&said, "damping").0, 0.1), "{said}");
+    let path = table_of("curve.csv", &[("omega [rad/s]", &omega), ("M [N m]", &torque)]);
+    let (_, said) = fmm(&path, &["--model", "coulomb + linear", "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert!(said["warnings"][0].as_str().unwrap().contains("the rows are taken for steady states"), "{said}");
+    assert!(is_close(finding(&said, "friction_force").0, 0.5), "{said}");
+    let (is_done, text) = fmm(&path, &["--model", "dahl"]);
+    assert!(!is_done && text.contains("dahl depends on time or position, of which steady states have none"), "{text}");
+}
+
+/// A law with more parameters than samples leaves the others, and a limit in time gives the best so far.
+#[test]
+fn one_law_that_fails_leaves_the_others() {
+    let [t, x, v, f] = rubbed();
+    let few = |values: &[f64]| values.iter().step_by(180).copied().collect::<Vec<_>>();
+    let columns = [("t [s]", few(&t)), ("x [m]", few(&x)), ("v [m/s]", few(&v)), ("F [N]", few(&f))];
+    let path = table_of("few.csv", &columns.each_ref().map(|(name, values)| (*name, &values[..])));
+    let (is_done, said) = fmm(&path, &["--model", "gms_2,coulomb + linear", "--json"]);
+    assert!(is_done, "{said}");
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(said["models"].as_array().unwrap().len(), 1);
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("the law gms_2 took no part in the judgement: the record has 9 samples"), "{warnings}");
+    let path = table_of("limited.csv", &[("t [s]", &t), ("x [m]", &x), ("F [N]", &f)]);
+    let (is_done, said) = fmm(&path, &["--model", "gms_2", "--time-limit", "1"]);
+    assert!(is_done && said.contains("sliding_friction_force"), "{said}");
 }

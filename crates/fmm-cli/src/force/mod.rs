@@ -4,20 +4,25 @@
 //! steps; fits each model and gives out what was found. `--validate` tells how well a model predicts a record to which
 //! it was not fitted.
 
+mod columns;
 mod source;
 
 use std::error::Error;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
-use crate::input::Held;
+use crate::input::{Held, limit};
 use crate::output::{Output, pair, print, print_json, while_busy};
 use clap::Args;
-use fmm_identify::{Candidate, ForceLoop, ForceRecord, Identification, Machine, Onset, SpeedBin, Validation, compare};
+use columns::Columns;
+use fmm_identify::{
+    Candidate, Comparison, ForceLoop, ForceRecord, Identification, IdentifyError, Inquiry, Machine, Onset, SpeedBin,
+    Validation,
+};
 use serde_json::{Value, json};
-use source::Source;
+use source::{Source, Table};
 
 /// Fits friction to a measured force along a measured motion.
 #[derive(Debug, Args)]
@@ -29,7 +34,8 @@ pub(crate) struct Arguments {
     source: Source,
     /// Models to fit, separated by commas: a law, then after plus signs damping (linear, quadratic, cubic, any sign)
     /// and what else acts or is measured (zero, inertia, stiffness, gravity, asymmetry, load offset, channels, delay);
-    /// unless given, coulomb and dahl, each with linear and asymmetry
+    /// unless given, coulomb and dahl, each with linear and asymmetry; along a motion that goes one way coulomb with
+    /// linear, and with quadratic as well; for steady states coulomb and berger
     #[arg(long, value_delimiter = ',')]
     model: Vec<String>,
     /// Hold a parameter at a value, in the unit in which it is fitted, as in exponent=2; of one law alone as in
@@ -39,23 +45,113 @@ pub(crate) struct Arguments {
     /// The longest delay between motion and force that is looked for, in s; twenty samples unless given
     #[arg(long, value_name = "SECONDS")]
     longest_delay: Option<f64>,
-    /// Records to which nothing is fitted, but whose forces are predicted
+    /// Records to which nothing is fitted, but whose forces are predicted; the model that predicts them best is
+    /// preferred
     #[arg(long, value_name = "FILE")]
     validate: Vec<PathBuf>,
+    /// Stop the fits after this time, an equal share for each model, and give the best so far, in s
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
     #[command(flatten)]
     output: Output,
 }
 
 /// Models that are fitted unless others are given.
 const MODELS: [&str; 2] = ["coulomb + linear + asymmetry", "dahl + linear + asymmetry"];
+/// The same along motions that go one way, which show no levels that differ by direction and little presliding.
+const MODELS_ONE_WAY: [&str; 2] = ["coulomb + linear", "coulomb + linear + quadratic"];
+/// The same for steady states, which show no presliding, of both directions or of one.
+const MODELS_STEADY: [&str; 2] = ["coulomb + linear + asymmetry", "berger + linear + asymmetry"];
+const MODELS_STEADY_ONE_WAY: [&str; 2] = ["coulomb + linear", "berger + linear"];
+
+/// Models for these records, if none is given.
+fn models_for(records: &[ForceRecord]) -> [&'static str; 2] {
+    let is_steady = records.iter().any(ForceRecord::is_timeless);
+    match (is_steady, records.iter().all(ForceRecord::goes_one_way)) {
+        (true, true) => MODELS_STEADY_ONE_WAY,
+        (true, false) => MODELS_STEADY,
+        (false, true) => MODELS_ONE_WAY,
+        (false, false) => MODELS,
+    }
+}
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let (source, validated) = (&arguments.source, &arguments.validate);
-    let read = |files: &[PathBuf]| files.iter().map(|file| source.read(file)).collect::<Result<Vec<_>, _>>();
-    let (records, others) = (read(&arguments.files)?, read(validated)?);
+    let read = |files: &[PathBuf]| -> Result<(Vec<ForceRecord>, Vec<Columns>), Box<dyn Error>> {
+        let tables = files.iter().map(|file| arguments.source.read(file)).collect::<Result<Vec<_>, _>>()?;
+        Ok(tables.into_iter().map(|Table { record, columns }| (record, columns)).unzip())
+    };
+    let ((records, columns), (others, columns_of_others)) = (read(&arguments.files)?, read(&arguments.validate)?);
+    let described = described(arguments, &records)?;
+    let compared = compared(arguments, &records, &others, &described)?;
+    let found = compared.identifications();
+    let picture = |(found, number): (&Identification, usize)| {
+        Ok((format!("force_{number}.svg"), drawn(&panels(&records[0], found)?)))
+    };
+    arguments.output.draw("force_*.svg", || found.iter().zip(1..).map(picture).collect())?;
+    let validations = |number: usize| compared.validations().get(number).map_or(&[][..], Vec::as_slice);
+    let all_files = || arguments.files.iter().chain(&arguments.validate);
+    let all_columns = || columns.iter().chain(&columns_of_others);
+    let remarks: Vec<String> = all_files()
+        .zip(all_columns())
+        .flat_map(|(file, columns)| columns.remarks.iter().map(|remark| named(file)(remark)))
+        .collect();
+    if arguments.output.json {
+        let models = found.iter().zip(0..).map(|(found, i)| document(found, &arguments.validate, validations(i)));
+        let columns =
+            |(file, columns): (&PathBuf, &Columns)| json!({ "file": file.display().to_string(), "columns": columns });
+        let warnings: Vec<String> =
+            remarks.into_iter().chain(compared.warnings().iter().map(ToString::to_string)).collect();
+        let document = json!({
+            "columns": all_files().zip(all_columns()).map(columns).collect::<Vec<_>>(),
+            "samples": records.iter().map(ForceRecord::len).sum::<usize>(),
+            "friction_over_speed": records.iter().map(speeds).collect::<Vec<_>>(),
+            "loops": records.iter().map(loops).collect::<Vec<_>>(),
+            "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
+            "models": models.collect::<Vec<_>>(),
+            "preferred": compared.preferred().law(),
+            "preferred_by": if others.is_empty() { "fit" } else { "prediction" },
+            "is_decided": compared.is_decided(),
+            "warnings": warnings,
+        });
+        return print_json(&document);
+    }
+    let mut out = String::new();
+    for (file, columns) in all_files().zip(all_columns()).skip(records.len()) {
+        writeln!(out, "{}, not fitted: {columns}", file.display())?;
+    }
+    for ((file, record), columns) in arguments.files.iter().zip(&records).zip(&columns) {
+        let unit = record.force_unit();
+        writeln!(out, "{}: {} samples, forces in {unit}", file.display(), record.len())?;
+        writeln!(out, "  columns: {columns}")?;
+        for line in without_a_law(record) {
+            writeln!(out, "  {line}")?;
+        }
+    }
+    for remark in remarks {
+        writeln!(out, "note: {remark}")?;
+    }
+    for (found, number) in found.iter().zip(0..) {
+        writeln!(out, "\n{found}")?;
+        for ((file, record), said) in arguments.validate.iter().zip(&others).zip(validations(number)) {
+            let (rms, unit) = (said.rms, record.force_unit());
+            let share = said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
+            writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
+            if let Some(warning) = said.warning(found.law()) {
+                writeln!(out, "  - {warning}")?;
+            }
+        }
+    }
+    if described.len() > 1 {
+        writeln!(out, "\n{compared}")?;
+    }
+    print(out.trim_end())
+}
+
+/// The models that the arguments describe.
+fn described(arguments: &Arguments, records: &[ForceRecord]) -> Result<Vec<Candidate>, Box<dyn Error>> {
     let mut models: Vec<&str> = arguments.model.iter().map(String::as_str).collect();
     if models.is_empty() {
-        models.extend(MODELS);
+        models.extend(models_for(records));
     }
     let law_of = |model: &str| model.split(['+', ',']).next().unwrap_or_default().trim().to_owned();
     let stray = |held: &&Held| held.law.as_ref().is_some_and(|law| models.iter().all(|model| law_of(model) != *law));
@@ -74,47 +170,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
         described.push(model);
     }
-    let what = format!("fitting {}", models.join(", "));
-    let compared = while_busy(&what, || compare(&Machine::per_unit_mass(), &records, &described))??;
-    let found = compared.identifications();
-    let picture = |(found, number): (&Identification, usize)| {
-        Ok((format!("force_{number}.svg"), drawn(&panels(&records[0], found)?)))
-    };
-    arguments.output.draw("force_*.svg", || found.iter().zip(1..).map(picture).collect())?;
-    if arguments.output.json {
-        let models = found.iter().map(|found| document(found, validated, &others)).collect::<Result<Vec<_>, _>>()?;
-        let document = json!({
-            "samples": records.iter().map(ForceRecord::len).sum::<usize>(),
-            "friction_over_speed": records.iter().map(speeds).collect::<Vec<_>>(),
-            "loops": records.iter().map(loops).collect::<Vec<_>>(),
-            "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
-            "models": models,
-            "preferred": compared.preferred().law(),
-            "is_decided": compared.is_conclusive(),
-        });
-        return print_json(&document);
+    Ok(described)
+}
+
+/// The comparison of the `models` by their fits to `records` and their predictions of `others`.
+fn compared(
+    arguments: &Arguments,
+    records: &[ForceRecord],
+    others: &[ForceRecord],
+    models: &[Candidate],
+) -> Result<Comparison, Box<dyn Error>> {
+    let mut inquiry = Inquiry::of(&Machine::per_unit_mass(), records).validated_by(others);
+    if let Some(seconds) = arguments.time_limit {
+        inquiry = inquiry.within(limit(seconds)?);
     }
-    let mut out = String::new();
-    for (file, record) in arguments.files.iter().zip(&records) {
-        let unit = record.force_unit();
-        writeln!(out, "{}: {} samples, forces in {unit}", file.display(), record.len())?;
-        for line in without_a_law(record) {
-            writeln!(out, "  {line}")?;
-        }
-    }
-    for found in found {
-        writeln!(out, "\n{found}")?;
-        for (file, record) in validated.iter().zip(&others) {
-            let said = validation(found, file, record)?;
-            let (rms, unit) = (said.rms, record.force_unit());
-            let share = said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
-            writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
-        }
-    }
-    if found.len() > 1 {
-        writeln!(out, "\n{compared}")?;
-    }
-    print(out.trim_end())
+    let names: Vec<String> = models.iter().map(Candidate::name).collect();
+    let found = while_busy(&format!("fitting {}", names.join(", ")), || inquiry.among(models))?;
+    found.map_err(|error| match error {
+        IdentifyError::NotPredicted { record, source } => named(&arguments.validate[record - 1])(source).into(),
+        error => error.into(),
+    })
 }
 
 /// Loops and onsets in lines of text.
@@ -186,12 +261,7 @@ fn onsets(record: &ForceRecord) -> Value {
     record.onsets().iter().map(onset).collect()
 }
 
-/// Prediction error of the model on the record of a `file` to which it was not fitted.
-fn validation(found: &Identification, file: &Path, record: &ForceRecord) -> Result<Validation, String> {
-    found.validate(record).map_err(named(file))
-}
-
-fn document(found: &Identification, files: &[PathBuf], others: &[ForceRecord]) -> Result<Value, Box<dyn Error>> {
+fn document(found: &Identification, files: &[PathBuf], validations: &[Validation]) -> Value {
     let findings: Vec<Value> = found
         .findings()
         .iter()
@@ -206,19 +276,22 @@ fn document(found: &Identification, files: &[PathBuf], others: &[ForceRecord]) -
             })
         })
         .collect();
-    let mut validated = Vec::new();
-    for (file, record) in files.iter().zip(others) {
-        let said = validation(found, file, record)?;
-        validated.push(json!({ "file": file.display().to_string(), "rms": said.rms, "share_of_force": said.share() }));
-    }
-    Ok(json!({
+    let validated = |(file, said): (&PathBuf, &Validation)| {
+        let (file, share) = (file.display().to_string(), said.share());
+        json!({ "file": file, "rms": said.rms, "share_of_force": share })
+    };
+    let predicted = validations.iter().filter_map(|said| said.warning(found.law()));
+    let warnings: Vec<String> =
+        found.warnings().iter().map(ToString::to_string).chain(predicted.map(|w| w.to_string())).collect();
+    json!({
         "model": found.law(),
+        "samples": found.samples(),
         "rms_residual": found.rms_residual(),
         "share_of_force": found.share_of_force(),
         "findings": findings,
-        "not_fitted": validated,
-        "warnings": found.warnings().iter().map(ToString::to_string).collect::<Vec<_>>(),
-    }))
+        "not_fitted": files.iter().zip(validations).map(validated).collect::<Vec<_>>(),
+        "warnings": warnings,
+    })
 }
 
 /// Bins of the friction over the speed.
@@ -253,9 +326,10 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
         abscissae.iter().zip(&residuals).filter_map(|(at, left)| Some((*at, (*left)?))).collect()
     };
     let text = format!("fit − measured, {:.3e} {} rms", found.rms_residual(), record.force_unit());
-    Ok(vec![
-        against(record.positions(), "position", record.position_unit()),
-        against(record.velocities(), "velocity", &velocity),
+    let along = against(record.velocities(), "velocity", &velocity);
+    let of_time = !record.is_timeless();
+    let motion = of_time.then(|| against(record.positions(), "position", record.position_unit()));
+    let panels = vec![
         Panel::new(label(of_speed, &speed), friction, 260.0).with(
             Role::Points,
             "half the difference of the directions, medians",
@@ -271,7 +345,10 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
             "0° at the greatest velocity, 90° at the greatest position",
             left(&phases(record)),
         ),
-    ])
+    ];
+    // Steady states have neither times nor phases.
+    let shown = if of_time { panels.len() } else { 1 };
+    Ok(motion.into_iter().chain([along]).chain(panels.into_iter().take(shown)).collect())
 }
 
 /// The phase of the motion at each sample (°), from 0 to 360: the angle of velocity and position, each as a share of

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use clap::Args;
 use fmm_identify::ForceRecord;
-use fmm_record::{Column, DataFile, Label, Quantity, RecordError, WrittenUnit};
+use fmm_record::{Column, DataFile, Label, Reader, RecordError, WrittenUnit};
 
 use crate::files::{self, named};
+use crate::force::columns::{Columns, FORCE, LOAD, POSITION, Role, VELOCITY};
 use crate::input::Layout;
 
 /// Columns of a table by their meaning.
@@ -16,6 +17,15 @@ pub(crate) struct Source {
     /// The column of times (s), by name or number; found by its name unless given
     #[arg(long, value_name = "NAME|INDEX")]
     time: Option<String>,
+    /// The sampling rate, if there is no column of times
+    #[arg(long, value_name = "HZ", conflicts_with = "time")]
+    rate: Option<f64>,
+    /// Use the record from this time on
+    #[arg(long, value_name = "S")]
+    from: Option<f64>,
+    /// Use the record up to this time
+    #[arg(long, value_name = "S")]
+    to: Option<f64>,
     /// The column of positions
     #[arg(long, value_name = "NAME|INDEX")]
     position: Option<String>,
@@ -25,9 +35,15 @@ pub(crate) struct Source {
     /// The column of forces or torques
     #[arg(long, value_name = "NAME|INDEX")]
     force: Option<String>,
+    /// Turn the sign of the force: it was measured as the reaction of the contact
+    #[arg(long)]
+    turn_sign: bool,
     /// The column of normal loads, so that levels are coefficients
     #[arg(long, value_name = "NAME|INDEX")]
     load: Option<String>,
+    /// Reading of that column without a load, in its unit, to be taken off
+    #[arg(long, value_name = "LOAD", default_value_t = 0.0, requires = "load", allow_negative_numbers = true)]
+    tare: f64,
     /// Columns of what else was measured, of which a model with channels has a share: the actuators of a brake
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     channels: Vec<String>,
@@ -49,60 +65,6 @@ pub(crate) struct Source {
     layout: Layout,
 }
 
-/// Meaning of a column.
-struct Role {
-    option: &'static str,
-    quantity: Quantity,
-    /// Required dimension in words, and its SI units.
-    needed: &'static str,
-    units: &'static [&'static str],
-}
-
-// Volts, amperes and counts can stand for any quantity, and friction can be given in them.
-const POSITION: Role = Role {
-    option: "--position",
-    quantity: Quantity::Displacement,
-    needed: "length or angle, such as mm or deg",
-    units: &["m", "rad", "V", "A", "counts"],
-};
-const VELOCITY: Role = Role {
-    option: "--velocity",
-    quantity: Quantity::Velocity,
-    needed: "velocity, such as mm/s or deg/s",
-    units: &["m/s", "rad/s", "V", "A", "counts"],
-};
-const FORCE: Role = Role {
-    option: "--force",
-    quantity: Quantity::Force,
-    needed: "force or torque, such as N or N m",
-    units: &["N", "N m", "V", "A", "counts"],
-};
-const LOAD: Role = Role { option: "--load", quantity: Quantity::Force, needed: "force, such as N", units: &["N"] };
-
-impl Role {
-    /// The unit of a column: the one in its name, or else the one `said` by an option.
-    fn unit(&self, label: &Label, said: Option<&WrittenUnit>) -> Result<Option<WrittenUnit>, String> {
-        let (name, option) = (label.name(), self.option);
-        if let (Some(written), Some(said)) = (label.unit(), said)
-            && !said.is_same_as(written)
-        {
-            return Err(format!(
-                "channel \"{name}\" is in {written}, not in {said} as {option}-unit says; leave that out"
-            ));
-        }
-        let unit = label.unit().or(said).cloned();
-        unit.map(|unit| self.accepted(&format!("channel \"{name}\" is in"), unit)).transpose()
-    }
-
-    /// A unit that can be that of such a column; `origin` says whose it is.
-    fn accepted(&self, origin: &str, unit: WrittenUnit) -> Result<WrittenUnit, String> {
-        if self.units.contains(&unit.si()) {
-            return Ok(unit);
-        }
-        Err(format!("{origin} {unit}, but {} needs a unit of {}", self.option, self.needed))
-    }
-}
-
 /// A column in SI units, as far as its unit is known.
 struct Series {
     name: String,
@@ -118,66 +80,155 @@ impl Series {
     }
 }
 
+/// A record, and the columns of its file that it is of.
+pub(crate) struct Table {
+    pub(crate) record: ForceRecord,
+    pub(crate) columns: Columns,
+}
+
+/// The part of a table that is used, with its times (s); none for steady states.
+struct Part {
+    file: DataFile,
+    times: Vec<f64>,
+    /// Times of all samples of the file, by which errors are named.
+    all: Vec<f64>,
+}
+
 impl Source {
     /// The record in the table at `path`.
-    pub(crate) fn read(&self, path: &Path) -> Result<ForceRecord, Box<dyn Error>> {
+    pub(crate) fn read(&self, path: &Path) -> Result<Table, Box<dyn Error>> {
+        self.table(path).map_err(|error| named(path)(error).into())
+    }
+
+    /// The record in the table at `path`. The first sample alone tells the columns: gaps further on matter where they
+    /// are used.
+    fn table(&self, path: &Path) -> Result<Table, Box<dyn Error>> {
         // Numbered samples stand for the clock, so that the times are a column like any other and their steps may
         // differ.
         let reader = self.layout.reader().rate(1.0);
-        let (file, head) = (files::open(&reader, path)?, files::open(&reader.to(0.0), path)?);
-        self.record(&file, &head).map_err(|error| named(path)(error).into())
-    }
-
-    /// The record of a `file`, of which the first sample alone, the `head`, tells the columns: gaps further on matter
-    /// where they are used.
-    fn record(&self, file: &DataFile, head: &DataFile) -> Result<ForceRecord, Box<dyn Error>> {
+        let head = files::open(&reader.clone().to(0.0), path)?;
         let mut readings = head.channels()?.into_iter().map(|channel| head.channel(channel.position));
         let is_empty = |reading: &Result<_, RecordError>| matches!(reading, Err(RecordError::Values { .. }));
         let offered = readings.find(|reading| !is_empty(reading)).ok_or("the first sample has no number")??;
         let names = offered.columns;
         let labels: Vec<Label> = names.iter().map(|name| Label::of(name)).collect();
-        let column = |given: &Option<String>, meant: Option<&Role>| match (given, meant) {
-            (Some(name), _) => Some(Column::from(name.as_str())),
-            (None, Some(Role { quantity, .. })) => {
-                let place = labels.iter().position(|label| label.quantity() == Some(*quantity))?;
-                Some(Column::from(names[place].as_str()))
-            }
-            (None, None) => None,
-        };
         let missing =
             |what: &str| format!("no column is the {what}; name it by --{what}; there are: {}", names.join(", "));
-        let time = column(&self.time, None).or(offered.time.map(Column::Name)).ok_or_else(|| missing("time"))?;
-        let times = file.channel(time.clone()).map_err(|error| at_its_time(&time, error, &[]))?.seconds()?;
-        let series = |column: &Column, role: &Role, said| read(file, column, &times, |label| role.unit(label, said));
-        let forces = column(&self.force, Some(&FORCE)).ok_or_else(|| missing("force"))?;
-        let forces = series(&forces, &FORCE, self.force_unit.as_ref())?;
+        let mut columns = Columns::default();
+        let remarks = &mut columns.remarks;
+        let force = FORCE.column(self.force.as_ref(), &labels, remarks)?.ok_or_else(|| missing("force"))?;
+        let position = POSITION.column(self.position.as_ref(), &labels, remarks)?;
+        let velocity = VELOCITY.column(self.velocity.as_ref(), &labels, remarks)?;
+        if position.is_none() && velocity.is_none() {
+            return Err(format!(
+                "no column is a position or a velocity, along which friction acts; name one by --position or --velocity; \
+                 there are: {}",
+                names.join(", ")
+            )
+            .into());
+        }
+        let time = self.time.as_deref().map(Column::from).or(offered.time.map(Column::Name));
+        let time = time.filter(|_| self.rate.is_none());
+        let is_timeless = time.is_none() && self.rate.is_none();
+        if is_timeless && (position.is_some() || self.from.is_some() || self.to.is_some()) {
+            return Err(format!("{}; or say the sampling rate by --rate", missing("time")).into());
+        }
+        if is_timeless {
+            remarks.push(
+                "no column is the time, so that the rows are taken for steady states; give --time or --rate if they are not"
+                    .to_owned(),
+            );
+        }
+        let Part { file, times, all } = self.part(&reader, path, time.as_ref(), &force)?;
+        let series = |column: &Column, role: &Role, said| read(&file, column, &all, |label| role.unit(label, said));
+        let forces = series(&force, &FORCE, self.force_unit.as_ref())?;
         let said = self.position_unit.as_ref();
-        let positions = column(&self.position, Some(&POSITION));
-        let positions = positions.map(|column| series(&column, &POSITION, said)).transpose()?;
-        let velocities = column(&self.velocity, Some(&VELOCITY));
-        let velocities = velocities.map(|column| series(&column, &VELOCITY, None)).transpose()?;
+        let positions = position.map(|column| series(&column, &POSITION, said)).transpose()?;
+        let velocities = velocity.map(|column| series(&column, &VELOCITY, None)).transpose()?;
         let unit = position_unit(positions.as_ref(), velocities.as_ref(), said)?;
         let per_second = said.map_or(1.0, WrittenUnit::factor);
-        let velocities = velocities.map(|velocities| velocities.or_by(per_second));
-        let mut record = match (&positions, &velocities) {
+        let speeds = velocities.as_ref().map(|velocities| velocities.or_by(per_second));
+        let mut record = match (&positions, &speeds) {
             (Some(positions), _) => ForceRecord::of_positions(&times, &positions.values, &forces.values)?,
-            (None, Some(velocities)) => ForceRecord::of_velocities(&times, velocities, &forces.values)?,
+            (None, Some(speeds)) if is_timeless => ForceRecord::of_speeds(speeds, &forces.values)?,
+            (None, Some(speeds)) => ForceRecord::of_velocities(&times, speeds, &forces.values)?,
             (None, None) => return Err(missing("position").into()),
         };
-        if let (Some(_), Some(velocities)) = (&positions, &velocities) {
-            record = record.with_velocities(velocities)?;
+        if let (Some(_), Some(speeds)) = (&positions, &speeds) {
+            record = record.with_velocities(speeds)?;
         }
-        if let Some(load) = column(&self.load, None) {
-            record = record.under_loads(&series(&load, &LOAD, None)?.values)?;
+        if self.turn_sign {
+            record = record.with_turned_sign();
+        }
+        let name = |column: &Column| Some(file.channel(column.clone()).ok()?.channel);
+        columns.time = time.as_ref().and_then(name);
+        columns.position = positions.map(|series| series.name);
+        columns.velocity = velocities.map(|series| series.name);
+        if let Some(load) = &self.load {
+            let load = series(&Column::from(load.as_str()), &LOAD, None)?;
+            let tare = self.tare * load.unit.as_ref().map_or(1.0, WrittenUnit::factor);
+            let loads: Vec<f64> = load.values.iter().map(|value| value - tare).collect();
+            let negative = |error| {
+                format!(
+                    "{error}; take the reading without a load off by --tare, or leave its samples out by --from and --to"
+                )
+            };
+            record = record.under_loads(&loads).map_err(negative)?;
+            columns.load = Some(load.name);
         }
         for name in &self.channels {
-            let channel = read(file, &Column::from(name.as_str()), &times, |label| Ok(label.unit().cloned()))?;
+            let channel = read(&file, &Column::from(name.as_str()), &all, |label| Ok(label.unit().cloned()))?;
             record = record.with_channel(name, &channel.values, self.average)?;
+            columns.channels.push(channel.name);
         }
         if let Some(speed) = self.rest_speed {
             record = record.resting_up_to(speed)?;
         }
-        Ok(record.in_units(&unit, forces.unit.as_ref().map_or("N", WrittenUnit::si)))
+        record = record.in_units(&unit, forces.unit.as_ref().map_or("N", WrittenUnit::si));
+        columns.force = Some(forces.name);
+        columns.leave(&labels);
+        Ok(Table { record, columns })
+    }
+
+    /// The samples from --from to --to, by the column of `time` or by --rate.
+    fn part(
+        &self,
+        reader: &Reader,
+        path: &Path,
+        time: Option<&Column>,
+        force: &Column,
+    ) -> Result<Part, Box<dyn Error>> {
+        let file = files::open(reader, path)?;
+        let times = match (time, self.rate) {
+            (Some(time), _) => {
+                let read = file.channel(time.clone()).map_err(|error| at_its_time(time, error, &[]))?;
+                read.seconds()?
+            }
+            (None, Some(rate)) => {
+                if !(rate > 0.0 && rate.is_finite()) {
+                    return Err(format!("--rate {rate}: give a positive number of Hz").into());
+                }
+                // A gap leaves the number of samples as it is.
+                let count =
+                    file.channels()?.iter().find_map(|channel| Some(file.channel(channel.position).ok()?.record.len()));
+                let count = count.ok_or_else(|| format!("channel {force} has no sample"))?;
+                (0..count).map(|number| number as f64 / rate).collect()
+            }
+            (None, None) => Vec::new(),
+        };
+        if self.from.is_none() && self.to.is_none() {
+            return Ok(Part { file, all: times.clone(), times });
+        }
+        let (from, to) = (self.from.unwrap_or(f64::NEG_INFINITY), self.to.unwrap_or(f64::INFINITY));
+        let (first, end) = (times.partition_point(|time| *time < from), times.partition_point(|time| *time <= to));
+        if first >= end {
+            let [begin, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or(0.0));
+            return Err(
+                format!("no sample lies between --from and --to; the record goes from {begin} s to {last} s").into()
+            );
+        }
+        let reader = reader.clone().from(first as f64).to((end - 1) as f64);
+        Ok(Part { file: files::open(&reader, path)?, times: times[first..end].to_vec(), all: times })
     }
 }
 

@@ -15,7 +15,7 @@ use fmm_identify::Preparation;
 use fmm_record::Record;
 
 use crate::files;
-pub(crate) use question::{Held, Question};
+pub(crate) use question::{Held, Question, limit};
 use source::BUNDLED;
 pub(crate) use source::{Choice, Input, Layout, in_options, is_motion, motion, motion_called};
 

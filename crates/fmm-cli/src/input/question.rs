@@ -272,12 +272,15 @@ impl Question {
             inquiry = inquiry.holding(law.as_deref(), &name, value);
         }
         if let Some(seconds) = self.time_limit {
-            let limit =
-                Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))?;
-            inquiry = inquiry.within(limit);
+            inquiry = inquiry.within(limit(seconds)?);
         }
         Ok(inquiry.search()?)
     }
+}
+
+/// Time of a --time-limit.
+pub(crate) fn limit(seconds: f64) -> Result<Duration, String> {
+    Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))
 }
 
 /// Value of an option with its uncertainty.
