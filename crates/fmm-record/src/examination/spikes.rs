@@ -169,14 +169,20 @@ fn culprit(values: &[f64], suspect: Range<usize>, limit: f64) -> Option<Range<us
         }
         (suspect.start - from..suspect.end - from).all(|i| (bridged[i] - median_around(&bridged, i)).abs() <= limit)
     };
-    // A spike jumps away and jumps back, much farther than the samples beside it move off their straight lines. A
-    // motion that stops or sets in does one of the two, and a smooth peak neither.
+    // A spike jumps away and jumps back, much farther than the samples beside it move, or move off their straight lines.
+    // A motion that stops or sets in does one of the two, and a smooth peak neither.
+    let jumps = |away: f64, back: f64, beside: f64| {
+        away * back > 0.0 && away.abs().min(back.abs()) > (0.5 * limit).max(2.0 * beside)
+    };
+    let step = |from: usize, to: usize| values[to] - values[from];
+    let bend = |i: usize, towards: usize, next: usize| values[i] - 2.0 * values[towards] + values[next];
     let returns = |run: &Range<usize>| {
-        let bend = |i: usize, towards: usize, next: usize| values[i] - 2.0 * values[towards] + values[next];
-        let (away, back) = (bend(run.start, run.start - 1, run.start - 2), bend(run.end - 1, run.end, run.end + 1));
-        let before = if run.start > 2 { bend(run.start - 1, run.start - 2, run.start - 3).abs() } else { 0.0 };
-        let after = if run.end + 2 < values.len() { bend(run.end, run.end + 1, run.end + 2).abs() } else { 0.0 };
-        away * back > 0.0 && away.abs().min(back.abs()) > (0.5 * limit).max(2.0 * before.max(after))
+        let (first, last) = (run.start, run.end - 1);
+        let before = if first > 2 { bend(first - 1, first - 2, first - 3).abs() } else { 0.0 };
+        let after = if last + 3 < values.len() { bend(last + 1, last + 2, last + 3).abs() } else { 0.0 };
+        let beside = step(first - 2, first - 1).abs().max(step(last + 2, last + 1).abs());
+        jumps(step(first - 1, first), step(last + 1, last), beside)
+            || jumps(bend(first, first - 1, first - 2), bend(last, last + 1, last + 2), before.max(after))
     };
     (1..=LONGEST.min(suspect.len())).find_map(|length| {
         let runs = (suspect.start..=suspect.end - length).map(|start| start..start + length);
@@ -258,6 +264,17 @@ mod tests {
         for (bridged, clean) in bridged.values().iter().zip(&clean) {
             assert!((bridged - clean).abs() < 1.0, "{bridged} for {clean}");
         }
+    }
+
+    /// Two spikes with two samples between them.
+    #[test]
+    fn spikes_next_to_each_other_are_found() {
+        let mut values: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.02).sin()).collect();
+        values[400..403].iter_mut().for_each(|value| *value -= 0.8);
+        values[405] += 0.8;
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
+        let found: Vec<_> = spikes(&record).iter().map(|spike| (spike.index, spike.count)).collect();
+        assert_eq!(found, [(400, 3), (405, 1)]);
     }
 
     #[test]
