@@ -2,15 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use fmm_record::{DataFile, Reader, RecordError};
+use serde::Serializer;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Puts the path of a file before an error.
 pub(crate) fn named<E: Display>(path: &Path) -> impl Fn(E) -> String {
@@ -29,7 +28,10 @@ pub(crate) fn shown<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, 
 
 /// Path in a document that finds the file again: as text, or by its bytes where these are not Unicode.
 pub(crate) mod exact {
-    use super::{Deserialize, Deserializer, OsString, Path, PathBuf, Serialize, Serializer};
+    use std::ffi::OsString;
+    use std::path::{Path, PathBuf};
+
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub(crate) fn serialize<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
         match path.to_str() {

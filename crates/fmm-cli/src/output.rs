@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use fmm_model::Estimated;
+use fmm_model::{Estimated, Rounded};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -80,4 +80,23 @@ pub(crate) fn spinner() -> Result<ProgressBar, Box<dyn Error>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
     bar.enable_steady_tick(Duration::from_millis(100));
     Ok(bar)
+}
+
+/// An uncertainty to the places that one of its size deserves.
+pub(crate) fn of_size(uncertainty: f64) -> String {
+    let text = Rounded::new(0.0, Some(uncertainty)).to_string();
+    // Of "(0.0 ± 1.2)e-7" what stands behind the sign.
+    text.split_once(" ± ").map_or(text.clone(), |(_, size)| size.replace(')', ""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uncertainties_have_two_digits() {
+        assert_eq!(of_size(0.012_345), "0.012");
+        assert_eq!(of_size(1.234e-7), "1.2e-7");
+        assert_eq!(of_size(271.0), "270");
+    }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::row::{Row, Told, in_unit, quantities};
 use crate::figure::ends;
-use crate::report::of_size;
+use crate::output::of_size;
 
 /// Coverage probability of intervals (1).
 const LEVEL: f64 = 0.95;

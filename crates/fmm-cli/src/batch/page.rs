@@ -14,11 +14,11 @@ use super::summary::{Quantity, Summary};
 use super::table::{apart_lines, group_lines, is_main, joint_lines, name, records_line, result_line, statement};
 use crate::figure::{Panel, Role, drawn, label};
 use crate::files;
+use crate::output::of_size;
 use crate::page::{
     bullets, cell, escaped, figure, optional_cell, page as whole_page, paragraphs, row_heading, section, table,
     text_cell,
 };
-use crate::report::of_size;
 
 /// The page of a campaign.
 pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> String {

@@ -10,7 +10,7 @@ use super::dependence::FRICTION;
 use super::row::{Found, Outcome, Row, Told, in_unit, quantities};
 use super::sheet::Field;
 use super::summary::{ByGroup, Outlying, Quantity, Summary};
-use crate::report::of_size;
+use crate::output::of_size;
 
 /// One line for each record, with all digits.
 pub(crate) fn csv(campaign: &Campaign, rows: &[Row]) -> Result<String, Box<dyn Error>> {

@@ -1,9 +1,9 @@
 //! The budget of a report: where the uncertainty of each finding comes from.
 
 use fmm_identify::{Finding, Identification};
-use fmm_model::Rounded;
 use fmm_uq::{Budget, Contribution};
 
+use crate::output::of_size;
 use crate::page::{optional_cell, row_heading, table, text_cell, words};
 
 /// A share below this is not worth a number (1).
@@ -53,23 +53,4 @@ fn text(part: &Contribution<'_>) -> String {
         _ => format!("{share:.0} %"),
     };
     format!("{} ({share})", of_size(part.uncertainty))
-}
-
-/// An uncertainty to the places that one of its size deserves.
-pub(crate) fn of_size(uncertainty: f64) -> String {
-    let text = Rounded::new(0.0, Some(uncertainty)).to_string();
-    // Of "(0.0 ± 1.2)e-7" what stands behind the sign.
-    text.split_once(" ± ").map_or(text.clone(), |(_, size)| size.replace(')', ""))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn uncertainties_have_two_digits() {
-        assert_eq!(of_size(0.012_345), "0.012");
-        assert_eq!(of_size(1.234e-7), "1.2e-7");
-        assert_eq!(of_size(271.0), "270");
-    }
 }

@@ -13,11 +13,11 @@ use fmm_model::{Rounded, coverage_factor};
 use sha2::{Digest, Sha256};
 
 use self::budget::budget;
-pub(crate) use self::budget::of_size;
 pub(crate) use self::found::{Curve, Found, Pictures};
 use self::profiles::profiles;
 use crate::backbone;
 use crate::figure::{Panel, Role, drawn, histogram, label};
+use crate::output::of_size;
 use crate::page::{bullets, cell, escaped, figure, optional_cell, page, row_heading, section, table, text_cell, words};
 
 /// Coverage probability of intervals (1).
