@@ -41,6 +41,7 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
             RAND_CHACHA,
             ("rand_distr", "normal variates behind the band of a friction curve"),
             ("rayon", "takes derivatives, starts and laws of a fit on all threads"),
+            ("strsim", "distance of two words, for the name that is meant"),
             THISERROR,
         ],
     ),
