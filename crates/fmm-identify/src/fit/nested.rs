@@ -39,7 +39,6 @@ mod tests {
             ("coulomb + linear", "coulomb + linear + zero + asymmetry"),
             ("coulomb_viscous", "stribeck"),
             ("coulomb + linear", "berger + linear"),
-            ("berger + linear", "stribeck"),
             ("dahl", "dahl + linear + zero"),
         ] {
             let [special, general] = [special, general].map(|name| Candidate::named(name).unwrap());

@@ -80,7 +80,8 @@ impl Comparison {
         judgement.is_decided &= quantity.is_none();
         // The law may have taken a part of the drift.
         let drifts = decays.iter().any(Experiment::drifts);
-        judgement.is_decided &= !(drifts && identifications[preferred].structure.is_correlated());
+        let is_simple = matches!(identifications[preferred].family().dry_name(), None | Some("coulomb"));
+        judgement.is_decided &= !drifts || is_simple && !identifications[preferred].structure.is_correlated();
         // Noise that grows with the motion hides further parameters of a law that is left.
         let grows = identifications[preferred].covariance.noise.growth().is_some();
         let has_others = (0..candidates.len()).any(|place| place != preferred && judgement.is_left(place));
