@@ -161,13 +161,15 @@ impl fmt::Display for FrictionBound {
 }
 
 impl Comparison {
-    /// Upper bound of the dry friction where the preferred law has none: that of the best law with a level.
+    /// Upper bound of the dry friction where the preferred law has none: that of the best law with a level that the
+    /// records do not exclude.
     pub(crate) fn friction_bound(&self) -> Option<FrictionBound> {
         if self.preferred().force_unit().is_some() || self.preferred().family().level().is_some() {
             return None;
         }
-        let scored = self.identifications().iter().zip(self.scores());
-        let levelled = scored.filter(|(found, _)| matches!(found.family().dry_name(), Some("coulomb")));
+        let scored = self.identifications().iter().zip(self.scores()).zip(self.p_values());
+        let left = scored.filter(|(_, p)| **p >= EXCLUDED).map(|(scored, _)| scored);
+        let levelled = left.filter(|(found, _)| matches!(found.family().dry_name(), Some("coulomb")));
         let upper = |found: &Identification| {
             let sliding = *found.main_findings().first()?;
             Some((sliding.parameter().clone(), sliding.interval(0.95)?.1))
