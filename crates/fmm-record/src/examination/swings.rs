@@ -63,9 +63,9 @@ pub struct Crossing {
 /// ```
 /// use fmm_record::{Quantity, Record, Swings};
 ///
-/// // 2 Hz about 1.5, losing amplitude at a constant rate as dry friction makes it. let at = |t: f64| 1.5 + (1.0 - 0.05
-/// * t) * (std::f64::consts::TAU * 2.0 * t).sin(); let record = Record::sampled(100.0, (0..1000).map(|i|
-/// at(f64::from(i) / 100.0)).collect(), Quantity::Velocity, "V")?;
+/// // 2 Hz about 1.5, losing amplitude at a constant rate as dry friction makes it.
+/// let at = |t: f64| 1.5 + (1.0 - 0.05 * t) * (std::f64::consts::TAU * 2.0 * t).sin();
+/// let record = Record::sampled(100.0, (0..1000).map(|i| at(f64::from(i) / 100.0)).collect(), Quantity::Velocity, "V")?;
 ///
 /// let swings = Swings::of(&record);
 /// assert_eq!((swings.peaks().len(), swings.crossings().len()), (40, 39));
@@ -543,8 +543,7 @@ mod tests {
         }
     }
 
-    /// Rest with noise before a release or before a blow; what turns in it is no swing. A displacement that begins at
-    /// its peak, turns once more, and stops: noise moves the first peak out of the record.
+    /// A displacement that begins at its peak, turns once more, and stops: noise moves the first peak out of it.
     #[test]
     fn a_record_that_begins_at_its_peak_has_it() {
         let decay = CoulombDecay { frequency: 3.8, amplitude: 10.0, deadband: 2.5, release: 0.0 };
@@ -575,6 +574,7 @@ mod tests {
         }
     }
 
+    /// Rest with noise before a release or before a blow; what turns in it is no swing.
     #[test]
     fn rest_before_a_motion_has_no_peaks() {
         type Motion<'a> = (&'a str, Quantity, &'a dyn Fn(f64) -> f64);
