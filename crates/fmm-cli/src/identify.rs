@@ -165,7 +165,11 @@ fn give_out(
             path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|page| ending.eq_ignore_ascii_case(page)));
         if !is_page {
             let path = path.display();
-            return Err(format!("--report writes a page of HTML, but {path} is called otherwise; give a name that ends in .html, which a browser prints as PDF").into());
+            let refusal = format!(
+                "--report writes a page of HTML, but {path} is called otherwise; give a name that ends in .html, which a \
+                 browser prints as PDF"
+            );
+            return Err(refusal.into());
         }
     }
     let begun = Instant::now();

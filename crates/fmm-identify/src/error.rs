@@ -196,7 +196,8 @@ impl IdentifyError {
     /// A finding of which value or variance lies beyond the range of numbers, as a mass of 1e300 kg makes it.
     pub(crate) fn beyond_numbers(parameter: &Parameter, value: f64) -> Self {
         let what = format!(
-            "{} is {value:.3e} {}, of which the variance lies beyond the range of numbers; check the units of mass, stiffness and load",
+            "{} is {value:.3e} {}, of which the variance lies beyond the range of numbers; check the units of mass, \
+             stiffness and load",
             parameter.name(),
             parameter.unit()
         );

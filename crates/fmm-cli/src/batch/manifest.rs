@@ -35,7 +35,8 @@ pub(super) fn listed(names: &[impl AsRef<str>]) -> String {
 /// The column that leaves a record out.
 pub(super) const EXCLUDE: &str = "exclude";
 
-/// Reason for which a cell of the column leaves its record out, empty where it is `true` alone; `None` where it does not.
+/// Reason for which a cell of the column leaves its record out, empty where it is `true` alone; `None` where it does
+/// not.
 pub(super) fn exclusion(cell: &str) -> Option<String> {
     match cell.to_lowercase().as_str() {
         "" | "false" | "no" | "0" => None,

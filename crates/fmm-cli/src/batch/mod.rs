@@ -39,8 +39,9 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "manifest")]
     records: Vec<PathBuf>,
     /// A table (CSV) or a list (TOML) of records, each with its `file`, relative to the manifest; columns called like
-    /// an option of `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, `exclude` leaves it out
-    /// (true, or the reason), others (operator, specimen, …) describe it, but one that is nearly called like an option is refused, and so are `force`,
+    /// an option of `fmm identify` (channel, unit, mass, normal_load, …) set it for their record, `exclude` leaves it
+    /// out (true, or the reason), others (operator, specimen, …) describe it, but one that is nearly called like an
+    /// option is refused, and so are `force`,
     /// `base` and `impact`, as all records are of free vibrations. In TOML, [[record]] begins a record, [common] holds
     /// what all share, `group` names a column for --group, and [sheet] holds the fields of a record sheet
     #[arg(long, value_name = "FILE", conflicts_with = "records")]

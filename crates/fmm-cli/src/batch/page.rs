@@ -234,7 +234,8 @@ fn records(campaign: &Campaign, rows: &[Row]) -> String {
         ))
     });
     format!(
-        "{alike}{}<p>All quantities, with all digits, are in the table campaign.csv and in the document campaign.json.</p>\n{}",
+        "{alike}{}<p>All quantities, with all digits, are in the table campaign.csv and in the document \
+         campaign.json.</p>\n{}",
         table("records", &headings, rows.iter().map(row)),
         warned.collect::<String>()
     )

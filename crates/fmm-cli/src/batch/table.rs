@@ -158,7 +158,8 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
     });
     let mut lines = vec![
         format!("joint fit of {} records by {}: {}{load}", together.records, together.law, values.join(", ")),
-        "the joint fit takes machine and law for the same in all records: what differs between them is not in its uncertainties"
+        "the joint fit takes machine and law for the same in all records: what differs between them is not in its \
+         uncertainties"
             .to_owned(),
     ];
     let differ: Vec<&str> = summary
@@ -169,7 +170,8 @@ pub(super) fn joint_lines(summary: &Summary) -> Vec<String> {
         .collect();
     if !differ.is_empty() {
         lines.push(format!(
-            "the records differ beyond their uncertainties in {}: there the joint uncertainties are too small, and the consensus counts",
+            "the records differ beyond their uncertainties in {}: there the joint uncertainties are too small, and the \
+             consensus counts",
             differ.join(", ")
         ));
     }
@@ -209,7 +211,8 @@ pub(super) fn apart_lines(summary: &Summary) -> Vec<String> {
     }
     if summary.found > 1 && summary.counted < 2 {
         lines.push(
-            "fewer than two records are free of doubt, so that there is no consensus; --count-doubtful counts the others as well"
+            "fewer than two records are free of doubt, so that there is no consensus; --count-doubtful counts the \
+             others as well"
                 .to_owned(),
         );
     }

@@ -1,4 +1,5 @@
-//! Plan of the next tests from the document of a campaign: its machine, its friction, its noise, its loads and releases.
+//! Plan of the next tests from the document of a campaign: its machine, its friction, its noise, its loads and
+//! releases.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

@@ -28,8 +28,8 @@ pub(crate) struct Arguments {
     /// The plan, as TOML or, by its ending, as JSON
     #[arg(required_unless_present = "from")]
     file: Option<PathBuf>,
-    /// Make the plan from the document of a campaign, campaign.json of `fmm batch --out`: its machine, friction and noise,
-    /// with tests at its loads and releases. It is printed, to be changed and given as a file
+    /// Make the plan from the document of a campaign, campaign.json of `fmm batch --out`: its machine, friction and
+    /// noise, with tests at its loads and releases. It is printed, to be changed and given as a file
     #[arg(long, value_name = "campaign.json", conflicts_with = "file")]
     from: Option<PathBuf>,
     #[command(flatten)]

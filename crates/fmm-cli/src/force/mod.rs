@@ -205,7 +205,8 @@ fn without_a_law(record: &ForceRecord) -> Vec<String> {
     if let (Some(energy), Some(friction)) = (of_loops(|a| a.energy.value), of_loops(|a| a.friction.value)) {
         let count = loops.len();
         lines.push(format!(
-            "loops: {count}, in the median {energy:.4e} {force} {position} each, {friction:.4e} {force} in the mean of the way"
+            "loops: {count}, in the median {energy:.4e} {force} {position} each, {friction:.4e} {force} in the mean of \
+             the way"
         ));
     }
     let onsets = record.onsets();

@@ -135,7 +135,8 @@ impl Source {
         }
         if is_timeless {
             remarks.push(
-                "no column is the time, so that the rows are taken for steady states; give --time or --rate if they are not"
+                "no column is the time, so that the rows are taken for steady states; give --time or --rate if they \
+                 are not"
                     .to_owned(),
             );
         }
@@ -170,7 +171,8 @@ impl Source {
             let loads: Vec<f64> = load.values.iter().map(|value| value - tare).collect();
             let negative = |error| {
                 format!(
-                    "{error}; take the reading without a load off by --tare, or leave its samples out by --from and --to"
+                    "{error}; take the reading without a load off by --tare, or leave its samples out by --from and \
+                     --to"
                 )
             };
             record = record.under_loads(&loads).map_err(negative)?;

@@ -18,12 +18,12 @@ const AROUND: (usize, usize) = (40, 60);
 const USABLE: f64 = 20.0;
 /// Least height of a resonance above its surroundings (dB).
 const PROMINENCE: f64 = 20.0;
-/// Fall of the magnitude on either side of a resonance within which lines are fitted, and are fitted again (dB). Origin:
-/// chosen; half of the lines of a mode alone lie within the narrower band.
+/// Fall of the magnitude on either side of a resonance within which lines are fitted, and are fitted again (dB).
+/// Origin: chosen; half of the lines of a mode alone lie within the narrower band.
 const WIDE: f64 = 10.0;
 const NARROW: f64 = 6.0;
-/// Root mean square that one mode leaves of its lines, over its peak, above which it is no description (1). Origin: chosen;
-/// modes apart of a measured hammer leave 0.006 to 0.03, those beside another mode 0.06 and 0.09.
+/// Root mean square that one mode leaves of its lines, over its peak, above which it is no description (1). Origin:
+/// chosen; modes apart of a measured hammer leave 0.006 to 0.03, those beside another mode 0.06 and 0.09.
 const MISFIT: f64 = 0.05;
 
 /// Weights on the samples of each trial.
@@ -104,7 +104,8 @@ impl Analysis {
             let share = peak.fit.map_or(0.0, |fit| fit.residual / peak.line.magnitude);
             if share > MISFIT {
                 warnings.push(format!(
-                    "the fit at {} Hz by one mode leaves {:.0} % of the peak: another mode may be near, or the lines are too few",
+                    "the fit at {} Hz by one mode leaves {:.0} % of the peak: another mode may be near, or the lines \
+                     are too few",
                     peak.line.frequency,
                     100.0 * share
                 ));
@@ -112,7 +113,8 @@ impl Analysis {
         }
         if usable < 0.999 * h1.frequencies().last().copied().unwrap_or(0.0) {
             warnings.push(format!(
-                "above {usable:.4} Hz the force is more than {USABLE} dB below its best; resonances there are not listed"
+                "above {usable:.4} Hz the force is more than {USABLE} dB below its best; resonances there are not \
+                 listed"
             ));
         }
         let uncertainty = average.uncertainty(Estimator::H1).ok();

@@ -104,7 +104,8 @@ impl Given {
             let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
             let (frequency, edge) = (isolated.frequency, isolated.edge);
             let how = format!(
-                "the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left out at both ends"
+                "the mode at {frequency:.4} Hz, by a filter that looks {edge:.4} s in both directions, which are left \
+                 out at both ends"
             );
             input.origin = format!("{}; {how}", input.origin);
             input.record = isolated.record;

@@ -241,7 +241,8 @@ impl Question {
                 }
                 (own, theirs) => {
                     return Err(format!(
-                        "a joint fit needs the normal load of all records or of none, but it is {} for {name} and {} for {other}",
+                        "a joint fit needs the normal load of all records or of none, but it is {} for {name} and {} \
+                         for {other}",
                         words(own),
                         words(theirs)
                     ));

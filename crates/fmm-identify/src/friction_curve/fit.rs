@@ -141,8 +141,8 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often and before the `end`, first for
-    /// white noise, then for that of the residuals.
+    /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often and before
+    /// the `end`, first for white noise, then for that of the residuals.
     pub(super) fn of(
         problem: &Problem<'_>,
         mut values: Vec<f64>,

@@ -134,8 +134,8 @@ impl Identification {
         self.forces.as_ref().map_or(1.0, |forces| forces.spread)
     }
 
-    /// Root mean square of the residuals over the standard deviation of the forces along motions (1), or over their root
-    /// mean square if all go one way; `None` for an identification of vibrations, or if the forces do not change.
+    /// Root mean square of the residuals over the standard deviation of the forces along motions (1), or over their
+    /// root mean square if all go one way; `None` for an identification of vibrations, or if the forces do not change.
     pub fn share_of_force(&self) -> Option<f64> {
         let force = self.forces.as_ref()?.deviation;
         Validation { rms: self.rms_residual(), force }.share()

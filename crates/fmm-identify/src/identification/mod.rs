@@ -231,7 +231,8 @@ impl Identification {
         if decays.len() != self.motions.len() || given != fitted {
             let (count, expected) = (decays.len(), self.motions.len());
             return Err(IdentifyError::wrong_record(format!(
-                "the identification is that of {expected} record(s) with {fitted} residuals, but {count} with {given} were given"
+                "the identification is that of {expected} record(s) with {fitted} residuals, but {count} with {given} \
+                 were given"
             )));
         }
         Ok(as_fitted(decays, &self.disturbances))

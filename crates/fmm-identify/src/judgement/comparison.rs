@@ -52,8 +52,8 @@ pub(crate) fn explains(identifications: &[Identification]) -> bool {
 }
 
 impl Comparison {
-    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have none,
-    /// and by the `validations` of each with forces that were not fitted, of which there may be none.
+    /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have
+    /// none, and by the `validations` of each with forces that were not fitted, of which there may be none.
     pub(crate) fn of(
         decays: &[Experiment],
         candidates: &[Candidate],
@@ -70,7 +70,8 @@ impl Comparison {
         judgement.is_decided &= others.is_empty();
         // The preferred law has the sentence on its own fit among its warnings.
         let own = format!("the fit {}", identifications[preferred].fit().outcome());
-        let is_said = |warning: &Warning| matches!(warning, Warning::OtherLaw { law, sentence } if *law == candidates[preferred].name() && *sentence == own);
+        let name = candidates[preferred].name();
+        let is_said = |warning: &Warning| *warning == Warning::OtherLaw { law: name.clone(), sentence: own.clone() };
         let others: Vec<Warning> = others.into_iter().filter(|warning| !is_said(warning)).collect();
         // A filter in the sensor that explains the record as well is a rival, though it is no law.
         let sensor = filtering_sensor(decays, &identifications, preferred)

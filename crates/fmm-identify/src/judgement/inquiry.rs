@@ -240,8 +240,8 @@ impl<'a> Inquiry<'a> {
         self.on_pool(|| self.fit(&candidate, self.experiments, Begin::Anywhere, &self.options, end))
     }
 
-    /// The comparison of `candidates` by an identification each. A law that cannot be fitted is left out, with a warning
-    /// that has the reason; a law that ends above a special case of it is fitted again from there.
+    /// The comparison of `candidates` by an identification each. A law that cannot be fitted is left out, with a
+    /// warning that has the reason; a law that ends above a special case of it is fitted again from there.
     ///
     /// Of forces along motions, two laws are compared at the samples that count for both, and by what each leaves at
     /// others beyond its usual residual.

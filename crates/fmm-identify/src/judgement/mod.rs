@@ -96,10 +96,10 @@ impl Judgement {
     /// b is the law with the smallest sum of squares S, Σ the noise that its residuals r show. At samples that count
     /// for one of the two laws alone, S counts what it leaves there beyond its usual residual, and δ nothing; b is the
     /// law that fewest others fit better than. σ_i² is the variance of that noise in the direction in which the two
-    /// laws differ: twice the logarithm of a ratio of likelihoods for correlated noise. It depends on the two laws alone, and not on how often the record was sampled,
-    /// nor on other candidates. The probability of D_i is that of Fisher's F with as many degrees of freedom as the
-    /// best law has more parameters, at least one; times the positions at which a best law that leaps can leap, each of
-    /// which is a try (Bonferroni).
+    /// laws differ: twice the logarithm of a ratio of likelihoods for correlated noise. It depends on the two laws
+    /// alone, and not on how often the record was sampled, nor on other candidates. The probability of D_i is that of
+    /// Fisher's F with as many degrees of freedom as the best law has more parameters, at least one; times the
+    /// positions at which a best law that leaps can leap, each of which is a try (Bonferroni).
     pub(crate) fn of(candidates: &[Candidate], identifications: &[Identification]) -> Option<Self> {
         let better =
             |found: &Identification| identifications.iter().filter(|other| found.excess_beside(other) > 0.0).count();

@@ -24,8 +24,8 @@ pub(crate) const EQUAL_MISFIT: f64 = 1e-6;
 /// Relative difference of two sums of squares that is rounding (1).
 pub(crate) const ROUNDING_OF_SQUARES: f64 = 1e-9;
 
-/// Factor of the error of the best prediction (1) up to which another is as good: that of 5 000 independent residuals is
-/// known to a hundredth.
+/// Factor of the error of the best prediction (1) up to which another is as good: that of 5 000 independent residuals
+/// is known to a hundredth.
 pub(crate) const EQUAL_PREDICTION: f64 = 1.01;
 
 /// Relative uncertainty above which extra damping cannot be excluded (1). Origin: chosen.

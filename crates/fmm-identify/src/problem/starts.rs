@@ -158,8 +158,8 @@ impl Problem<'_> {
     }
 
     /// The `start` with the findings of a `special` case of the law: its level, and all that has a name in both. Parts
-    /// above a level, and terms that the special case lacks, are zero; parameters at whose values the law is the special
-    /// case have these.
+    /// above a level, and terms that the special case lacks, are zero; parameters at whose values the law is the
+    /// special case have these.
     pub(crate) fn nested(&self, special: &Fitted, start: &[f64]) -> Vec<f64> {
         let (law, other) = (self.law(), &special.model.law);
         let level = |law: &Law| {

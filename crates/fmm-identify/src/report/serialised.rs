@@ -150,8 +150,9 @@ impl Serialize for ScoreTest {
 }
 
 /// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` and `excluded_without_fit`
-/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `friction_bound` (where it has none), `p` and `scores` (one per model, by which
-/// laws are preferred), `models`, `preparation` (one object, or a list if there are several records), `warnings`.
+/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `friction_bound` (where it has none), `p`
+/// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
+/// are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();

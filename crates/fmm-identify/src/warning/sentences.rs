@@ -84,8 +84,8 @@ impl Warning {
             ),
             Self::OtherQuantity { quantity, declared, law } => write!(
                 f,
-                "no law explains the record as {declared}, and {law} explains it as {quantity}: check the quantity of the \
-                 channel"
+                "no law explains the record as {declared}, and {law} explains it as {quantity}: check the quantity \
+                 of the channel"
             ),
             Self::Beginning { law, time } => write!(
                 f,
@@ -119,8 +119,8 @@ impl Warning {
         match self {
             Self::DrivesMotion { friction, unit } => write!(
                 f,
-                "the force drives the motion: turn its sign (`--turn-sign` of `fmm force`, `ForceRecord::with_turned_sign`); in the mean \
-                 of the way friction would be {} {unit}, and no friction is negative",
+                "the force drives the motion: turn its sign (`--turn-sign` of `fmm force`, `ForceRecord::with_turned_sign`); \
+                 in the mean of the way friction would be {} {unit}, and no friction is negative",
                 to_three_digits(*friction)
             ),
             Self::WorseThanNone { law, share, is_fitted } => {

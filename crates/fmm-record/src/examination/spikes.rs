@@ -169,8 +169,8 @@ fn culprit(values: &[f64], suspect: Range<usize>, limit: f64) -> Option<Range<us
         }
         (suspect.start - from..suspect.end - from).all(|i| (bridged[i] - median_around(&bridged, i)).abs() <= limit)
     };
-    // A spike jumps away and jumps back, much farther than the samples beside it move, or move off their straight lines.
-    // A motion that stops or sets in does one of the two, and a smooth peak neither.
+    // A spike jumps away and jumps back, much farther than the samples beside it move, or move off their straight
+    // lines. A motion that stops or sets in does one of the two, and a smooth peak neither.
     let jumps = |away: f64, back: f64, beside: f64| {
         away * back > 0.0 && away.abs().min(back.abs()) > (0.5 * limit).max(2.0 * beside)
     };

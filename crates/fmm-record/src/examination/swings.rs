@@ -606,7 +606,8 @@ mod tests {
                 // What jumps at the blow may be the first turning point, a sample early.
                 if first < begin - 0.05 / frequency - 1.5 / rate {
                     early.push(format!(
-                        "trial {trial}, {name}: {first} s for {begin} s, {frequency} Hz at {rate} Hz, noise {noise}, step {step}"
+                        "trial {trial}, {name}: {first} s for {begin} s, {frequency} Hz at {rate} Hz, noise {noise}, \
+                         step {step}"
                     ));
                 }
             }

@@ -79,7 +79,8 @@ pub(crate) fn only(found: &[usize], column: &Column, kind: &str, written: &[Stri
             let candidates = listed(&found.iter().map(candidate).collect::<Vec<_>>());
             let count = found.len();
             let what = format!(
-                "{count} {kind}s are called {column}: {candidates}; choose one by its whole name or by its position, counted from 0"
+                "{count} {kind}s are called {column}: {candidates}; choose one by its whole name or by its position, \
+                 counted from 0"
             );
             Err(RecordError::channel(what))
         }

@@ -139,7 +139,8 @@ impl Request {
             (Some(declared), _, Some(written)) if !declared.is_same_as(written) => {
                 let what = format!("channel \"{channel}\" is in {written}, not in {declared}");
                 let remedy = format!(
-                    "leave out `unit` {declared}, or give `scale` as well, the factor that turns the numbers into {declared}"
+                    "leave out `unit` {declared}, or give `scale` as well, the factor that turns the numbers into \
+                     {declared}"
                 );
                 Err(RecordError::contradiction(what, remedy))
             }

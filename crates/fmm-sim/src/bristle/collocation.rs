@@ -22,7 +22,8 @@ const MOST_DERIVATIVE_ITERATIONS: usize = 60;
 /// Remaining error of Newton's method, in units of the tolerance.
 const LEFT_OVER: f64 = 0.01;
 
-/// Correction above which the increments are not yet a measure of the motion (1): a prediction may be off by any factor.
+/// Correction above which the increments are not yet a measure of the motion (1): a prediction may be off by any
+/// factor.
 const FAR: f64 = 1e-2;
 
 /// Step times stiffness below which the stiffness of a state does not count beside the eigenvalues of the method, 10 to

@@ -9,8 +9,8 @@ use crate::bristle::run::Run;
 use crate::bristle::taylor::ORDER;
 use crate::mechanics::Piece;
 
-/// Places looked at, each a quarter of the way of the one before from the end of the step that is next to a turn. At the
-/// last one, an error allowed at any tolerance remains of whatever the law does.
+/// Places looked at, each a quarter of the way of the one before from the end of the step that is next to a turn. At
+/// the last one, an error allowed at any tolerance remains of whatever the law does.
 const PLACES: usize = 9;
 
 /// The first of them, as a part of the step: what lasts longer is seen by the stages.

@@ -50,6 +50,16 @@ impl<L: Clone> Trial<'_, L> {
         self.machine.cause.excitation().into_iter().fold(scenario, Scenario::driven_by)
     }
 
+    /// The run of the exact engine, where the machine is linear.
+    fn exact(&self) -> Option<Named>
+    where
+        L: PiecewiseLinearLaw<f64>,
+    {
+        let scenario = self.scenario(self.machine.oscillator);
+        let run = || outcome(Exact.run(&scenario, &self.machine.sampling()), &scenario, self.machine.amplitude);
+        self.machine.oscillator.is_linear().then(|| ("exact".to_owned(), run()))
+    }
+
     fn referee(&self, contact: Contact<'_>) -> Option<Motion> {
         let (mut referee, sampling) = (Referee::new(self.machine, contact), self.machine.sampling());
         let mut budget = BUDGET;
@@ -122,14 +132,9 @@ impl<L: Clone> LawVisitor<f64, L> for Trial<'_, L> {
     where
         L: PiecewiseLinearLaw<f64> + SlidingLaw<f64>,
     {
-        let (scenario, sampling) = (self.scenario(self.machine.oscillator), self.machine.sampling());
-        let exact = self
-            .machine
-            .oscillator
-            .is_linear()
-            .then(|| outcome(Exact.run(&scenario, &sampling), &scenario, self.machine.amplitude));
+        let exact = self.exact();
         let (mut runs, referee) = self.sliding();
-        runs.extend(exact.map(|exact| ("exact".to_owned(), exact)));
+        runs.extend(exact);
         (runs, referee)
     }
 
@@ -146,14 +151,9 @@ impl<L: Clone> LawVisitor<f64, L> for Trial<'_, L> {
     where
         L: PiecewiseLinearLaw<f64> + BristleLaw<f64>,
     {
-        let (scenario, sampling) = (self.scenario(self.machine.oscillator), self.machine.sampling());
-        let exact = self
-            .machine
-            .oscillator
-            .is_linear()
-            .then(|| outcome(Exact.run(&scenario, &sampling), &scenario, self.machine.amplitude));
+        let exact = self.exact();
         let (mut runs, referee) = self.bristle();
-        runs.extend(exact.map(|exact| ("exact".to_owned(), exact)));
+        runs.extend(exact);
         (runs, referee)
     }
 }

@@ -155,7 +155,8 @@ impl ForceRecord {
         let is_alike = both.abs() > ALIKE * (square * product(velocities, velocities)).sqrt();
         if is_alike && !(1.0 / 3.0..=3.0).contains(&ratio) {
             return Err(IdentifyError::contradiction(format!(
-                "the velocities are {ratio:.3} times the slope of the positions; state both in units and signs that belong together"
+                "the velocities are {ratio:.3} times the slope of the positions; state both in units and signs that \
+                 belong together"
             )));
         }
         Ok(())
