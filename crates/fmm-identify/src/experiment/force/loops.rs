@@ -37,7 +37,8 @@ impl ForceRecord {
     /// let times: Vec<f64> = (0..4000).map(|i| 0.001 * f64::from(i)).collect();
     /// let positions: Vec<f64> = times.iter().map(|t| 0.02 * (6.0 * t).sin()).collect();
     /// let velocities: Vec<f64> = times.iter().map(|t| 0.12 * (6.0 * t).cos()).collect();
-    /// let forces: Vec<f64> = positions.iter().zip(&velocities).map(|(x, v)| 12.0 * v.signum() + 500.0 * x + 3.0).collect();
+    /// let moved = positions.iter().zip(&velocities);
+    /// let forces: Vec<f64> = moved.map(|(x, v)| 12.0 * v.signum() + 500.0 * x + 3.0).collect();
     /// let record = ForceRecord::of_positions(&times, &positions, &forces)?.with_velocities(&velocities)?;
     /// for cycle in record.loops() {
     ///     assert!((cycle.energy.value - 4.0 * 0.02 * 12.0).abs() < 1e-2);
