@@ -24,7 +24,7 @@ type Ends = (f64, f64);
 /// The column of the normal load.
 pub(super) const LOAD: &str = "normal_load";
 /// Ends of the names of measures of friction, in the order of their information.
-pub(super) const FRICTION: [&str; 3] = ["mu", "friction_force", "friction_per_mass"];
+pub(crate) const FRICTION: [&str; 3] = ["mu", "friction_force", "friction_per_mass"];
 
 /// A measure of friction against something that differs between records.
 #[derive(Debug, Clone, Serialize)]

@@ -28,6 +28,7 @@ use rayon::prelude::*;
 use crate::files;
 use crate::output::{print, spinner};
 use campaign::Campaign;
+pub(crate) use dependence::FRICTION;
 use joint::Together;
 use row::{Outcome, Row};
 use summary::Summary;

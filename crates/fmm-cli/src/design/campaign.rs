@@ -8,6 +8,8 @@ use std::fmt::Write;
 use fmm_model::Rounded;
 use serde::Deserialize;
 
+use crate::batch::FRICTION;
+
 /// Parts of campaign.json that a plan needs.
 #[derive(Debug, Deserialize)]
 pub(super) struct Campaign {
@@ -49,8 +51,6 @@ struct Found {
     doubts: Vec<String>,
 }
 
-/// Measures of friction, that which tells most first.
-const FRICTION: [&str; 3] = ["mu", "friction_force", "friction_per_mass"];
 /// Tests of the plan.
 const TESTS: usize = 3;
 /// Loads and releases that differ by less than this factor are one (1), by judgement.
@@ -89,13 +89,19 @@ impl Campaign {
         };
         let mut text = "[machine]\n".to_owned();
         // Writing to a string does not fail.
-        for name in ["mass", "stiffness"] {
-            let _ = first.declared.get(name).map(|known| writeln!(text, "{name} = {}", amount(*known)));
-        }
+        let [mass, stiffness] = ["mass", "stiffness"].map(|name| first.declared.get(name).copied());
+        let _ = mass.map(|known| writeln!(text, "mass = {}", amount(known)));
+        // Beside a mass, the tests find the stiffness: the plan takes its value only.
+        let kept_u = |u: f64| if mass.is_some() { 0.0 } else { u };
+        let _ = stiffness.map(|(value, u)| writeln!(text, "stiffness = {}", amount((value, kept_u(u)))));
         let loads = distinct(sound().filter_map(|found| found.declared.get("normal_load").copied()));
-        let _ = writeln!(text, "frequency = {frequency}");
+        // Mass and stiffness tell the frequency, and a plan takes no more than two of the three.
+        if mass.is_none() || stiffness.is_none() {
+            let _ = writeln!(text, "frequency = {frequency}");
+        }
         let _ = loads.last().map(|load| writeln!(text, "normal_load = {}", amount(*load)));
         let damping = damping.map_or_else(String::new, |damping| format!(", damping_per_mass = {damping}"));
+        // Without a load, mu is the name of the friction per mass, as in every law of a plan.
         let _ = writeln!(text, "\n[guess]\nlaw = \"{law}\"\nvalues = {{ mu = {}{damping} }}", measure.mean);
         let noise = median(sound().map(|found| found.rms_residual));
         let _ = writeln!(text, "\n[sensor]\nquantity = \"{quantity}\"\nnoise = {noise:e}");
