@@ -7,23 +7,15 @@ use fmm_friction::{Coulomb, CoulombViscous, LawFamily};
 use crate::candidate::Candidate;
 use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
-use crate::judgement::rules::{LEAST_CHANGE, REACH_OF_CHANGE, SHOWN_CHANGE};
+use crate::judgement::asked::Asked;
+use crate::judgement::rules::{REACH, SHOWN_CHANGE};
 use crate::machine::term::Term;
-use crate::problem::Problem;
-use crate::problem::tangent::Tangent;
-use crate::quantities::table::Place;
 
 /// Change of the friction during the records, for each half cycle, beside a law that has none.
 ///
 /// Friction that falls during a record (wear, running in, warming) looks like less friction and more viscous damping:
 /// both follow the amplitude from cycle to cycle. Within a half cycle damping follows the speed and a change does not,
-/// which is all that tells them apart. The estimate is one step of least squares from the fit without a change:
-///
-/// ```text
-/// w = −dᵀr/dᵀd,     u² = dᵀΣd/(dᵀd)²,     d = (1 − J(JᵀJ)⁻¹Jᵀ) ∂m/∂w
-/// ```
-///
-/// with the residuals r, their noise Σ and the derivatives J of the fit, and m the motion.
+/// which is all that tells them apart. The estimate is one step of least squares from the fit without a change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FrictionChange {
@@ -58,7 +50,7 @@ impl FrictionChange {
     /// The largest change for each half cycle (1) that the records would not show: that above which a change would be
     /// named, or that up to which this one may reach.
     pub fn largest_unseen(&self) -> f64 {
-        (SHOWN_CHANGE * self.uncertainty).max(self.per_half_cycle.abs() + REACH_OF_CHANGE * self.uncertainty)
+        (SHOWN_CHANGE * self.uncertainty).max(self.per_half_cycle.abs() + REACH * self.uncertainty)
     }
 }
 
@@ -89,39 +81,12 @@ impl fmt::Display for FrictionChange {
     }
 }
 
-/// Size of a term that residuals ask for, its standard uncertainty, and the relative error of the level over it.
-struct Asked {
-    value: f64,
-    uncertainty: f64,
-    moved: f64,
-}
-
-/// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, for
-/// driven motions, and where the parameters can follow it.
+/// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, and where
+/// the records do not tell.
 fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Option<Asked> {
     let is_next = |extended: &Candidate| extended.terms.has(term) && !found.fitted.model.terms.has(term);
     let extended = with_change(&Candidate::fitted(found)).filter(is_next)?;
-    if experiments.iter().any(|experiment| experiment.drive().is_some()) || !found.structure.is_noisy() {
-        return None;
-    }
-    let fit = found.fit();
-    let base = found.problem(experiments).ok()?;
-    let problem = Problem::of(&extended, *found.machine(), experiments).ok()?;
-    let index = problem.table.shared(Place::Term(term))?;
-    let mut direction = problem.columns(&problem.extended(fit), &[index]).ok()?.pop()?;
-    let tangent = Tangent::of(&base, fit)?;
-    let before: f64 = direction.iter().map(|d| d * d).sum();
-    let level = found.family().level().map(|level| base.table.law + level);
-    let relative = |level: usize| tangent.step(level, &direction) / fit.values()[level];
-    let moved = level.filter(|level| fit.values()[*level] > 0.0).map_or(0.0, relative);
-    tangent.span.take_out(&mut direction);
-    let square: f64 = direction.iter().map(|d| d * d).sum();
-    let noise = found.covariance.noise.product(&direction, &direction);
-    if !(square > LEAST_CHANGE * before && noise > 0.0) {
-        return None;
-    }
-    let product: f64 = direction.iter().zip(fit.residuals()).map(|(d, r)| d * r).sum();
-    Some(Asked { value: -product / square, uncertainty: noise.sqrt() / square, moved })
+    Asked::of(found, experiments, &extended, term)
 }
 
 /// True if the residuals of `found` ask for a change of the friction, or for one that is not steady itself, by more

@@ -10,6 +10,7 @@ use crate::judgement::change::{FrictionChange, asks_for_change};
 use crate::judgement::filtering::{filtering_sensor, other_quantity};
 use crate::judgement::rules::{EQUAL_PREDICTION, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
+use crate::judgement::unseen_damping::UnseenDamping;
 use crate::judgement::{Judgement, shortcomings};
 use crate::quantities::derived::OF_DAMPING;
 use crate::warning::Warning;
@@ -39,6 +40,8 @@ pub struct Comparison {
     pub(crate) score_tests: Vec<ScoreTest>,
     /// Change of the friction during the records that the preferred law leaves out.
     pub(crate) change: Option<FrictionChange>,
+    /// Damping of the machine that the preferred law leaves out.
+    pub(crate) unseen_damping: Option<UnseenDamping>,
     /// Names of the laws that the friction over the speed excludes without a fit.
     pub(crate) excluded: Vec<String>,
     pub(crate) is_complete: bool,
@@ -111,12 +114,14 @@ impl Comparison {
             warnings.push(Warning::FrictionChanges { law: identifications[preferred].law().to_owned() });
             judgement.is_decided = false;
         }
+        let unseen_damping = UnseenDamping::of(&identifications[preferred], decays);
         Ok(Self {
             records: decays.iter().map(|decay| decay.summary().clone()).collect(),
             identifications,
             judgement,
             score_tests: Vec::new(),
             change,
+            unseen_damping,
             excluded: Vec::new(),
             is_complete: true,
             validations,

@@ -1,5 +1,6 @@
 //! The judgement: the fitted laws that the records allow, those that they exclude, and the preferred one.
 
+mod asked;
 pub(crate) mod change;
 pub(crate) mod comparison;
 pub(crate) mod filtering;
@@ -9,6 +10,7 @@ pub(crate) mod rules;
 pub(crate) mod score_test;
 mod search;
 mod trials;
+pub(crate) mod unseen_damping;
 
 pub use change::FrictionChange;
 pub use comparison::Comparison;

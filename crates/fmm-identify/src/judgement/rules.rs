@@ -102,9 +102,13 @@ pub(crate) const LEAST_CHANGE: f64 = 1e-6;
 /// two sides, as every record is asked.
 pub(crate) const SHOWN_CHANGE: f64 = 3.0;
 
-/// Standard uncertainties beyond the best value up to which a change that is not shown may reach (1). Origin: one in 44
-/// on one side.
-pub(crate) const REACH_OF_CHANGE: f64 = 2.0;
+/// Standard uncertainties beyond the best value up to which a change or a damping that is not shown may reach (1).
+/// Origin: one in 44 on one side.
+pub(crate) const REACH: f64 = 2.0;
+
+/// Standard uncertainties above which a law with damping is preferred to the same without (1). Origin: those of
+/// [`UNFIT`] on two sides.
+pub(crate) const SHOWN_DAMPING: f64 = 2.5;
 
 /// Standard uncertainties above which a change is fitted, and its misfit decides (1). Origin: one in 22 on two sides;
 /// of changes of three uncertainties five in six reach it.

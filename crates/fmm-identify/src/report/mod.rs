@@ -92,6 +92,7 @@ impl Comparison {
         let per_half_cycle = preferred.finding(CHANGE_PER_HALF_CYCLE);
         found.extend(per_half_cycle.map(|change| format!("{CHANGE_PER_HALF_CYCLE} = {}", change.quantity())));
         found.extend(self.friction_change().filter(|_| !main.is_empty()).map(|change| change.to_string()));
+        found.extend(self.unseen_damping.filter(|_| !main.is_empty()).map(|damping| damping.to_string()));
         let found =
             if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =

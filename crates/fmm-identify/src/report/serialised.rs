@@ -9,6 +9,7 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use crate::experiment::RecordSummary;
 use crate::finding::{Finding, Origin};
 use crate::identification::Identification;
+use crate::judgement::unseen_damping::UnseenDamping;
 use crate::judgement::{Comparison, FrictionChange, ScoreTest};
 use crate::report::FrictionBound;
 
@@ -126,6 +127,19 @@ impl Serialize for FrictionChange {
     }
 }
 
+/// The damping that the residuals ask for, its standard uncertainty, the largest that would not show, and the relative
+/// error of the level over it.
+impl Serialize for UnseenDamping {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut document = serializer.serialize_struct("UnseenDamping", 4)?;
+        document.serialize_field("per_mass", &self.per_mass)?;
+        document.serialize_field("uncertainty", &self.uncertainty)?;
+        document.serialize_field("largest_unseen", &self.largest_unseen())?;
+        document.serialize_field("price", &self.price)?;
+        document.end()
+    }
+}
+
 /// `name` and `unit` of the friction, `upper_95`, and the `law` that has it.
 impl Serialize for FrictionBound {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -150,13 +164,13 @@ impl Serialize for ScoreTest {
 }
 
 /// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` and `excluded_without_fit`
-/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `friction_bound` (where it has none), `p`
-/// and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
+/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `unseen_damping` (where it has none),
+/// `friction_bound` (where it has no friction), `p` and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
 /// are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 14)?;
+        let mut document = serializer.serialize_struct("Comparison", 15)?;
         document.serialize_field("preferred", self.preferred().law())?;
         document.serialize_field("decided", &self.is_conclusive())?;
         document.serialize_field("summary", &self.headline())?;
@@ -166,6 +180,7 @@ impl Serialize for Comparison {
         document.serialize_field("complete", &self.is_complete())?;
         document.serialize_field("signs", self.score_tests())?;
         document.serialize_field("friction_change", &self.friction_change())?;
+        document.serialize_field("unseen_damping", &self.unseen_damping)?;
         document.serialize_field("friction_bound", &self.friction_bound())?;
         document.serialize_field("p", self.p_values())?;
         document.serialize_field("scores", self.scores())?;

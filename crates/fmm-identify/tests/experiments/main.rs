@@ -13,3 +13,4 @@ mod no_friction;
 mod same_statement;
 mod simulated;
 mod springs;
+mod unseen_damping;
