@@ -44,7 +44,7 @@
 //! # Guarantees
 //!
 //! * A record has at least one sample, all finite, at equal intervals. Time stamps that are not uniform are an error
-//!   with the first wrong stamp.
+//!   with the first wrong stamp, unless they are asked for as they are ([`Reader::any_spacing`], [`Record::at_times`]).
 //! * Nothing is repaired in silence: faults are reported, not removed, and no reader edits data. A file that
 //!   contradicts itself is an error or, if its points are still readable, a warning.
 //! * No reader allocates by a length that a header states, none panics on damaged bytes, and compressed data expand to
@@ -76,6 +76,7 @@ mod files;
 mod numerics;
 mod record;
 mod sampling;
+mod spacing;
 #[cfg(test)]
 mod tests;
 mod units;

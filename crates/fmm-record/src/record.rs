@@ -1,20 +1,23 @@
-//! A uniformly sampled series with its quantity and unit.
+//! A sampled series with its quantity and unit.
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 use fmm_model::Rounded;
 
 use crate::error::RecordError;
 use crate::numerics::mean;
-use crate::sampling::uniform_grid;
+use crate::sampling::{is_clock, uniform_grid};
 use crate::units::Quantity;
 
-/// The times (s) between which samples are taken, to the end of the record where none is given.
+/// The times (s) between which samples are taken, to the end of the record where none is given, and whether they may
+/// be unequally spaced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Span {
     pub(crate) from: Option<f64>,
     pub(crate) to: Option<f64>,
+    pub(crate) is_any_spacing: bool,
 }
 
 impl Span {
@@ -59,6 +62,7 @@ impl Span {
         let record = Record {
             start: start + interval * kept.start as f64,
             interval,
+            elapsed: None,
             values,
             quantity: Quantity::Other,
             unit: String::new(),
@@ -89,20 +93,29 @@ impl Span {
             let (times, values) = (times.len(), values.len());
             return Err(RecordError::time(None, format!("{times} time stamps were given for {values} values")));
         }
+        let is_inside = |time: &f64| self.from.is_none_or(|from| *time >= from) && self.to.is_none_or(|to| *time <= to);
+        let inside = || {
+            let first = times.iter().position(is_inside).unwrap_or(0);
+            first..first + times[first..].iter().take_while(|time| is_inside(time)).count()
+        };
         let (start, interval) = match uniform_grid(times) {
-            Err(error) if self == Self::default() => return Err(error),
+            Ok(grid) => grid,
+            Err(error) if self.from.is_none() && self.to.is_none() => return self.or_unequal(times, values, error),
             // Stamps outside may be anything.
             Err(_) => {
-                let is_inside =
-                    |time: &f64| self.from.is_none_or(|from| *time >= from) && self.to.is_none_or(|to| *time <= to);
-                let first = times.iter().position(is_inside).unwrap_or(0);
-                let count = times[first..].iter().take_while(|time| is_inside(time)).count();
-                let (start, interval) = uniform_grid(&times[first..first + count])?;
-                return self.record(start, interval, values[first..first + count].to_vec());
+                let (times, values) = (&times[inside()], values[inside()].to_vec());
+                return match uniform_grid(times) {
+                    Ok((start, interval)) => self.record(start, interval, values),
+                    Err(error) => self.or_unequal(times, values, error),
+                };
             }
-            Ok(grid) => grid,
         };
         self.record(start, interval, values)
+    }
+
+    /// The record of unequally spaced `times`, where such are taken, else the `error` that they make.
+    fn or_unequal(self, times: &[f64], values: Vec<f64>, error: RecordError) -> Result<Record, RecordError> {
+        if self.is_any_spacing && is_clock(times) { Record::unequal(times, values) } else { Err(error) }
     }
 }
 
@@ -122,6 +135,9 @@ impl<'a> From<&'a Record> for Cow<'a, Record> {
 ///
 /// A record that exists is valid: it has at least one sample, every sample is finite, and the interval is positive.
 ///
+/// One made by [`Record::at_times`] may be unequally spaced. Its interval is then the mean one, and what needs equal
+/// intervals, such as an [`Examination`](crate::Examination) or a derivative, is that of [`Record::equally_spaced`].
+///
 /// ```
 /// use fmm_record::{Quantity, Record};
 ///
@@ -133,8 +149,10 @@ impl<'a> From<&'a Record> for Cow<'a, Record> {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    start: f64,
-    interval: f64,
+    pub(crate) start: f64,
+    pub(crate) interval: f64,
+    /// Times since the first sample (s), if they are unequally spaced.
+    pub(crate) elapsed: Option<Arc<[f64]>>,
     values: Vec<f64>,
     quantity: Quantity,
     unit: String,
@@ -212,12 +230,12 @@ impl Record {
         self.start
     }
 
-    /// Sampling interval (s).
+    /// Sampling interval (s), the mean one of unequally spaced samples.
     pub fn interval(&self) -> f64 {
         self.interval
     }
 
-    /// Sampling rate (Hz).
+    /// Sampling rate (Hz), the mean one of unequally spaced samples.
     pub fn rate(&self) -> f64 {
         self.interval.recip()
     }
@@ -244,10 +262,11 @@ impl Record {
 
     /// Time of sample `index` (s); `index` may lie beyond the end.
     pub fn time(&self, index: usize) -> f64 {
-        self.time_at(index as f64)
+        let elapsed = self.elapsed.as_ref().and_then(|elapsed| elapsed.get(index));
+        elapsed.map_or_else(|| self.time_at(index as f64), |elapsed| self.start + elapsed)
     }
 
-    /// Time of a point between samples (s), at a fractional index.
+    /// Time of a point between equally spaced samples (s), at a fractional index.
     pub(crate) fn time_at(&self, index: f64) -> f64 {
         self.start + self.interval * index
     }
@@ -296,7 +315,8 @@ impl Record {
     /// # Errors
     /// [`RecordError::Options`] as in [`Record::new`].
     pub fn starting_at(self, start: f64) -> Result<Self, RecordError> {
-        Self::new(start, self.interval, self.values, self.quantity, self.unit)
+        let elapsed = self.elapsed;
+        Ok(Self { elapsed, ..Self::new(start, self.interval, self.values, self.quantity, self.unit)? })
     }
 
     /// The samples from `from` to `to` (s), both ends included; times keep their origin. A sample counts as inside
@@ -306,12 +326,19 @@ impl Record {
     /// [`RecordError::Options`] if no sample lies there.
     pub fn crop(&self, from: f64, to: f64) -> Result<Self, RecordError> {
         let kept = self.samples_within(from, to)?;
-        Ok(self.derived(self.time(kept.start), self.values[kept].to_vec()))
+        if self.is_equally_spaced() {
+            return Ok(self.derived(self.time(kept.start), self.values[kept].to_vec()));
+        }
+        self.of_samples(kept)
     }
 
     /// The samples that [`Record::crop`] takes.
     pub(crate) fn samples_within(&self, from: f64, to: f64) -> Result<Range<usize>, RecordError> {
-        Span { from: Some(from), to: Some(to) }.samples(self.start, self.interval, self.len())
+        let span = Span { from: Some(from), to: Some(to), ..Span::default() };
+        match &self.elapsed {
+            None => span.samples(self.start, self.interval, self.len()),
+            Some(elapsed) => span.samples_at(self.start, elapsed),
+        }
     }
 
     /// The same motion in `most` samples or fewer: the means of neighbours where there are more.
@@ -335,7 +362,7 @@ impl Record {
             return Err(RecordError::options(format!("a scale factor must be finite and not zero, but is {factor}")));
         }
         let values = self.values.iter().map(|value| value * factor).collect();
-        Self::new(self.start, self.interval, values, self.quantity, unit)
+        Ok(self.with_values(values)?.with_unit(unit))
     }
 
     /// Every sample less `offset` (in the unit of the record).
@@ -346,8 +373,20 @@ impl Record {
         if !offset.is_finite() {
             return Err(RecordError::options(format!("an offset must be finite, but is {offset}")));
         }
-        let values = self.values.iter().map(|value| value - offset).collect();
-        Self::new(self.start, self.interval, values, self.quantity, self.unit.clone())
+        self.with_values(self.values.iter().map(|value| value - offset).collect())
+    }
+
+    /// Other `values` at the same times.
+    ///
+    /// # Errors
+    /// [`RecordError::Options`] if they are not as many, [`RecordError::Values`] if some are not finite.
+    pub fn with_values(&self, values: Vec<f64>) -> Result<Self, RecordError> {
+        if values.len() != self.len() {
+            let (given, needed) = (values.len(), self.len());
+            return Err(RecordError::options(format!("{given} values were given for a record of {needed} samples")));
+        }
+        let elapsed = self.elapsed.clone();
+        Ok(Self { elapsed, ..Self::new(self.start, self.interval, values, self.quantity, self.unit.clone())? })
     }
 
     /// Arithmetic mean of all samples.
@@ -355,9 +394,10 @@ impl Record {
         mean(&self.values)
     }
 
-    /// A record like this one, with `values` that are known to be finite and not empty.
+    /// An equally spaced record like this one, with `values` that are known to be finite and not empty.
     pub(crate) fn derived(&self, start: f64, values: Vec<f64>) -> Self {
-        Self { start, interval: self.interval, values, quantity: self.quantity, unit: self.unit.clone() }
+        let (quantity, unit) = (self.quantity, self.unit.clone());
+        Self { start, interval: self.interval, elapsed: None, values, quantity, unit }
     }
 }
 

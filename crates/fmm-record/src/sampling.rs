@@ -97,6 +97,17 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     }
 }
 
+/// True for `times` at which something may have been measured, though not at equal intervals: they go on, and repeat
+/// themselves hardly ever, as those that are rounded to more than an interval do.
+pub(crate) fn is_clock(times: &[f64]) -> bool {
+    /// Largest part of the steps that may be none (1). Origin: chosen; rows that are written twice are fewer.
+    const REPEATED: f64 = 0.05;
+    let repeated = times.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    times.iter().all(|time| time.is_finite())
+        && times.windows(2).all(|pair| pair[0] <= pair[1])
+        && repeated as f64 <= REPEATED * times.len() as f64
+}
+
 /// A time stamp (s) off a uniform grid, which would have it at `expected` (s).
 fn not_uniform(index: usize, time: f64, expected: f64, interval: f64) -> RecordError {
     let [stamp, step, place, deviation] = [time, interval, expected, time - expected].map(in_six_digits);

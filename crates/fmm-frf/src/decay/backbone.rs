@@ -158,6 +158,7 @@ impl Backbone {
     /// [`FrfError::TooFew`] if the record shows too few half cycles, [`FrfError::NoFit`] if it shows no line, too few
     /// cycles for two windows, or, if the `options` ask for a frequency, no mode within a fifth of it.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
+        let record = &*record.equally_spaced();
         let orders = match record.quantity() {
             Quantity::Velocity => 1,
             Quantity::Acceleration => 2,

@@ -44,6 +44,7 @@ impl IsolatedMode {
     /// # Errors
     /// Those of [`Backbone::of`](crate::Backbone::of), except that nothing has to decay.
     pub fn of(record: &Record, options: &BackboneOptions) -> Result<Self, FrfError> {
+        let record = &*record.equally_spaced();
         let Prepared { taken, frequency, fixed } = Prepared::of(record, options)?;
         let values = fixed.filtered(taken.values);
         let edge = taken.half as f64 * record.interval();

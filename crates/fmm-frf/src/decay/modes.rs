@@ -86,6 +86,7 @@ const LEAST: f64 = 1e-4;
 /// # Ok::<(), fmm_record::RecordError>(())
 /// ```
 pub fn decay_modes(record: &Record) -> Vec<DecayMode> {
+    let record = &*record.equally_spaced();
     let values = record.values();
     let mean = record.mean();
     let size = |i: &usize| (values[*i] - mean).abs();

@@ -36,11 +36,12 @@ impl Record {
         if !initial.is_finite() {
             return Err(RecordError::options(format!("an initial value must be finite, but is {initial}")));
         }
-        let half = 0.5 * self.interval();
+        let series = self.equally_spaced();
+        let half = 0.5 * series.interval();
         let mut sum = Sum::default();
         sum.add(initial);
         let mut previous: Option<f64> = None;
-        let values = self
+        let values = series
             .values()
             .iter()
             .map(|value| {
@@ -51,7 +52,7 @@ impl Record {
             })
             .collect();
         let unit = unit_of(self).times(&Unit::of("s")).to_string();
-        Self::new(self.start(), self.interval(), values, quantity, unit)
+        Self::new(series.start(), series.interval(), values, quantity, unit)
     }
 
     /// The derivative in time by central differences: displacement becomes velocity, velocity becomes acceleration.
@@ -77,9 +78,10 @@ impl Record {
     /// Those of [`Record::differentiate`] and [`Smoothing::apply`].
     pub fn differentiate_smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
         let quantity = self.quantity().derivative()?;
-        let slopes = smoothing.slope(self.values())?.into_iter().map(|slope| slope / self.interval()).collect();
+        let series = self.equally_spaced();
+        let slopes = smoothing.slope(series.values())?.into_iter().map(|slope| slope / series.interval()).collect();
         let unit = unit_of(self).per(&Unit::of("s")).to_string();
-        Self::new(self.start(), self.interval(), slopes, quantity, unit)
+        Self::new(series.start(), series.interval(), slopes, quantity, unit)
     }
 
     /// The record after `smoothing`.
@@ -87,7 +89,8 @@ impl Record {
     /// # Errors
     /// Those of [`Smoothing::apply`].
     pub fn smoothed_by(&self, smoothing: &Smoothing) -> Result<Self, RecordError> {
-        Ok(self.derived(self.start(), smoothing.apply(self.values())?))
+        let series = self.equally_spaced();
+        Ok(series.derived(series.start(), smoothing.apply(series.values())?))
     }
 }
 

@@ -62,10 +62,13 @@ pub struct Examination<'a> {
 }
 
 impl<'a> Examination<'a> {
-    /// Examination of `record`, owned or borrowed.
+    /// Examination of `record`, owned or borrowed, or of its motion at equal intervals
+    /// ([`Record::equally_spaced`]).
     pub fn of(record: impl Into<Cow<'a, Record>>) -> Self {
+        let record = record.into();
+        let record = if record.is_equally_spaced() { record } else { Cow::Owned(record.resampled()) };
         Self {
-            record: record.into(),
+            record,
             noise: OnceLock::new(),
             resolution: OnceLock::new(),
             spikes: OnceLock::new(),

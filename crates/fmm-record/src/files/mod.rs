@@ -187,6 +187,14 @@ impl Reader {
         self
     }
 
+    /// Takes time stamps that are unequally spaced as they are ([`Record::at_times`](crate::Record::at_times)), which
+    /// are an error otherwise.
+    #[must_use]
+    pub fn any_spacing(mut self) -> Self {
+        self.span.is_any_spacing = true;
+        self
+    }
+
     /// States the quantity of the channel, if the file does not.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
