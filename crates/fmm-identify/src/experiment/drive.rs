@@ -39,7 +39,7 @@ impl Drive {
             let found = format!("{} in {}", record.quantity(), record.unit());
             return Err(IdentifyError::drive("a force in N", &found));
         }
-        Ok(Self { kind: Kind::Force, ..Self::base_of(record.clone()) })
+        Ok(Self { kind: Kind::Force, ..Self::base_of(record) })
     }
 
     /// The measured motion of a base to which spring and counterface are fixed; best its acceleration. A velocity is
@@ -59,11 +59,12 @@ impl Drive {
                 return Err(IdentifyError::drive("an acceleration, a velocity or a displacement", &found));
             }
         };
-        Ok(Self::base_of(record))
+        Ok(Self::base_of(&record))
     }
 
     /// The motion of a base that is read without error.
-    fn base_of(record: Record) -> Self {
+    fn base_of(record: &Record) -> Self {
+        let record = record.equally_spaced().into_owned();
         let (gain_uncertainty, calibration_uncertainty) = (0.0, 0.0);
         let (longest_delay, delay_uncertainty) = (0.0, None);
         Self { record, kind: Kind::Base, gain_uncertainty, calibration_uncertainty, longest_delay, delay_uncertainty }

@@ -107,6 +107,7 @@ impl ImpactTrial {
     /// [`IdentifyError::WrongRecord`] for a channel of another quantity or unit, [`IdentifyError::TooFew`] if one is
     /// never quiet, and [`IdentifyError::NotSeen`] without a blow, without motion, or for motion against the force.
     pub fn prepare(force: &Record, velocity: &Record) -> Result<Self, IdentifyError> {
+        let (force, velocity) = (&*force.equally_spaced(), &*velocity.equally_spaced());
         require_together(force, velocity)?;
         let interval = velocity.interval();
         let force_noise = noise(force.values());

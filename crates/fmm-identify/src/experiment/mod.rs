@@ -25,6 +25,7 @@ use std::sync::Arc;
 
 use fmm_model::{Bounds, ModelError, Restoring};
 use fmm_record::{Quantity, Record};
+use fmm_sim::{Sampling, SimulationError};
 
 pub use drive::Drive;
 pub(crate) use driven::DrivenGuess;
@@ -173,7 +174,8 @@ impl Experiment {
     ///
     /// # Errors
     /// [`IdentifyError::OutOfRange`] for a corner above half the sampling rate or, behind a drive, a delay longer than
-    /// that, [`IdentifyError::TooFew`] if the filter leaves nothing.
+    /// that, [`IdentifyError::TooFew`] if the filter leaves nothing, [`IdentifyError::Contradiction`] for a filter
+    /// over samples that are unequally spaced.
     pub fn seen_by(mut self, sensor: Sensor) -> Result<Self, IdentifyError> {
         let frequency = self.guess.frequency();
         let limit = 0.5 * self.record.rate();
@@ -184,6 +186,12 @@ impl Experiment {
         }
         if let Some(drive) = self.drive() {
             drive.require_delay(sensor.delay())?;
+        }
+        if sensor.low_pass().is_some() && !self.record.is_equally_spaced() {
+            return Err(IdentifyError::contradiction(
+                "a low-pass filter in the sensor needs samples at equal intervals, and those of the record are not: \
+                 resample them, state the rate if only their times are wrong, or leave out the filter",
+            ));
         }
         let settled = (sensor.settling(frequency) * self.record.rate()).ceil() as usize;
         for range in &mut self.kept {
@@ -301,6 +309,14 @@ impl Experiment {
     /// The part of the record that is used, as it was measured.
     pub fn record(&self) -> &Record {
         &self.record
+    }
+
+    /// The times of the record after its beginning.
+    pub(crate) fn sampling(&self) -> Result<Sampling, SimulationError> {
+        match self.record.elapsed() {
+            Some(times) => Sampling::at(times.clone()),
+            None => Sampling::uniform(self.record.interval(), self.record.len()),
+        }
     }
 
     /// Description of the record and of everything seen in it.
@@ -431,10 +447,7 @@ impl Experiment {
         if self.lines.is_some() {
             return None;
         }
-        let values: Vec<f64> = self.record.values().iter().copied().step_by(stride).collect();
-        let interval = self.record.interval() * stride as f64;
-        let record =
-            Record::new(self.record.start(), interval, values, self.record.quantity(), self.record.unit()).ok()?;
+        let record = self.record.every(stride).ok()?;
         let thin = |range: &Range<usize>| range.start.div_ceil(stride)..range.end.div_ceil(stride);
         let kept: Vec<Range<usize>> = self.kept.iter().map(thin).filter(|range| !range.is_empty()).collect();
         let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };

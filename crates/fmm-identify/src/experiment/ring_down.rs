@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_model::ModelError;
-use fmm_record::{Examination, Interruption, Peak, Quantity, Record, Swings, Upsampling};
+use fmm_record::{
+    Examination, Interruption, Peak, Quantity, Record, Swings, Upsampling, quantisation_step, saturation,
+};
 
 use super::acceleration::{jumps, velocity_of};
 use super::{Experiment, usable};
@@ -33,13 +35,16 @@ impl Experiment {
     /// noise, and the offset is a parameter. Swings, release, spikes and noise are looked for in the record less its
     /// hum.
     ///
+    /// Samples that are unequally spaced are fitted at their times. What looks for swings, noise, spikes or hum sees
+    /// the motion at equal intervals ([`Record::equally_spaced`]).
+    ///
     /// An acceleration jumps where dry friction reverses. It is fitted as it is, but for the samples beside the
     /// reversals, if it jumps there: no accelerometer follows a jump. Its swings are looked for in its integral, less
     /// what drifts more slowly than the motion.
     ///
     /// # Errors
-    /// [`IdentifyError`] if the record is no motion, too short, constant, or shows fewer than two half swings, or if
-    /// the preparation leaves nothing of it.
+    /// [`IdentifyError`] if the record is no motion, too short, constant, or shows fewer than two half swings, if it
+    /// has no samples over more than a quarter of a period, or if the preparation leaves nothing of it.
     pub fn ring_down(record: &Record, preparation: &Preparation) -> Result<Self, IdentifyError> {
         let quantity = record.quantity();
         if !matches!(quantity, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration) {
@@ -47,9 +52,13 @@ impl Experiment {
             return Err(IdentifyError::wrong_quantity(subject, needed, quantity));
         }
         let (record, gain_uncertainty, clock_uncertainty) = usable(record, preparation)?;
-        let (record, upsampling) = measured(record)?;
+        let given = (!record.is_equally_spaced()).then(|| record.clone());
+        let (record, upsampling) = measured(record.equally_spaced().into_owned())?;
         let (first, end) = (record.start(), record.end());
         let views = Views::of(record)?;
+        if let Some(given) = &given {
+            require_no_long_gap(given, views.seen().swings())?;
+        }
         let is_acceleration = quantity == Quantity::Acceleration;
         let hum = views.record.hum().to_vec();
         let seen_quantity = views.seen().record().quantity();
@@ -92,12 +101,23 @@ impl Experiment {
             noise = less;
             kept = kept.into_iter().flat_map(|range| between(range, &jumps)).collect();
         }
-        let resolution = views.record.resolution();
+        let used = given.map(|given| given.crop(record.start(), record.end())).transpose()?;
+        let (resolution, saturation) = match &used {
+            Some(used) => {
+                // What lies between measured samples has less noise than they.
+                noise = used.noise();
+                (quantisation_step(used.values()), saturation(used.values()))
+            }
+            None => (views.record.resolution(), views.record.saturation()),
+        };
         if resolution.is_some_and(|step| step > COARSE * noise) {
             // What swings within a step or two is rounded to another motion.
             let last = peaks.last().map_or(0.0, |peak| (peak.time - start) / record.interval());
             kept = kept.into_iter().map(|range| range.start..range.end.min(last.max(0.0) as usize)).collect();
             kept.retain(|range| range.start < range.end);
+        }
+        if let Some(used) = &used {
+            kept = same_times(&kept, record, used);
         }
         let amplitudes = &guess.amplitudes;
         let in_record = if is_acceleration { 2.0 * PI * guess.frequency() } else { 1.0 };
@@ -105,7 +125,7 @@ impl Experiment {
             from: record.start(),
             to: record.end(),
             samples: kept.iter().map(Range::len).sum(),
-            rate: record.rate(),
+            rate: used.as_ref().unwrap_or(record).rate(),
             quantity,
             unit: record.unit().to_owned(),
             held_offset,
@@ -119,7 +139,7 @@ impl Experiment {
             resolution,
             rest_from: rest_from(&views.cleaned, resolution.unwrap_or(0.0), guess.frequency()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
-            saturation: views.record.saturation(),
+            saturation,
             offset_step: seen.offset_step(),
             period_change: Swings::period_change(&times, &heights),
             hum,
@@ -131,7 +151,8 @@ impl Experiment {
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         let nuisances = Nuisance::of_hum(&summary.hum).collect();
-        Ok(Self { peaks, ..Self::bare(views.record.into_record(), kept, guess, summary) }.beside(nuisances))
+        let record = used.unwrap_or_else(|| views.record.into_record());
+        Ok(Self { peaks, ..Self::bare(record, kept, guess, summary) }.beside(nuisances))
     }
 }
 
@@ -232,6 +253,29 @@ fn pulled_until(swings: &Swings, start: f64, quantity: Quantity) -> Option<f64> 
     // A velocity has its peak a quarter of a period after the turning point.
     let since = if quantity == Quantity::Displacement { 0.0 } else { 0.5 * half_cycle };
     (first.time - start > QUIET * half_cycle).then_some(first.time - since)
+}
+
+/// Refuses a record with a gap over which its `swings` cannot be followed.
+fn require_no_long_gap(measured: &Record, swings: &Swings) -> Result<(), IdentifyError> {
+    /// Longest gap over the period that is bridged (1). Origin: a cubic over a quarter of a period is off by less than
+    /// a tenth of the amplitude, and hides no turning point.
+    const LONGEST: f64 = 0.25;
+    let steps = measured.times().zip(measured.times().skip(1)).map(|(before, after)| [before, after]);
+    let longest = steps.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    match longest.zip(swings.frequency()).map(|(gap, frequency)| (gap, frequency * (gap[1] - gap[0]))) {
+        Some((gap, periods)) if periods > LONGEST => Err(IdentifyError::long_gap(gap, periods)),
+        _ => Ok(()),
+    }
+}
+
+/// The samples of `measured` within half an interval of those of `record` in these ranges.
+fn same_times(ranges: &[Range<usize>], record: &Record, measured: &Record) -> Vec<Range<usize>> {
+    let times: Vec<f64> = measured.times().collect();
+    let place = |index: usize| {
+        let time = record.time(index) - 0.5 * record.interval();
+        times.partition_point(|measured| *measured < time)
+    };
+    ranges.iter().map(|range| place(range.start)..place(range.end)).filter(|range| !range.is_empty()).collect()
 }
 
 /// The parts of `range` between `holes`, which are in order.

@@ -60,6 +60,7 @@ impl<'a> Response<'a> {
             && !problem.table.terms.has(Term::Change)
             && decay.drive().is_none()
             && decay.first_corner().is_none()
+            && decay.record().is_equally_spaced()
             && decay.load_factor() == 1.0
     }
 

@@ -222,7 +222,7 @@ impl Path {
             let count = (dense.ceil() as usize).clamp(2, MOST_SAMPLES);
             let sampling = Sampling::uniform(series.duration() / (count - 1) as f64, count)?;
             speeds.extend(problem.velocities(record, values, &sampling)?.into_iter().map(f64::abs));
-            let sampling = Sampling::uniform(series.interval(), series.len())?;
+            let sampling = experiment.sampling()?;
             let at_samples = problem.velocities(record, values, &sampling.keeping(Channels::Velocity))?;
             lowest.extend(at_samples.chunk_by(|a, b| (a > &0.0) == (b > &0.0)).filter_map(|half_cycle| {
                 let moving = half_cycle.iter().map(|v| v.abs()).filter(|speed| *speed > 0.0);

@@ -33,11 +33,7 @@ pub(crate) fn with_drift(
     let mut drifting = Vec::with_capacity(decays.len());
     for (decay, rows) in decays.iter().zip(problem.row_ranges()) {
         let (start, end) = (decay.record().start(), decay.record().end());
-        let times: Vec<f64> = decay
-            .kept()
-            .iter()
-            .flat_map(|range| range.clone().map(|index| start + index as f64 * decay.record().interval()))
-            .collect();
+        let times: Vec<f64> = decay.kept().iter().cloned().flatten().map(|index| decay.record().time(index)).collect();
         let energy = |shape: &dyn Fn(f64) -> f64| -> Option<f64> {
             let mut direction = vec![0.0; found.fit().residuals().len()];
             direction[rows.clone()].iter_mut().zip(&times).for_each(|(d, time)| *d = shape(*time));

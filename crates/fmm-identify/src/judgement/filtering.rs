@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fmm_fit::Options;
 use fmm_friction::CoulombViscous;
-use fmm_record::{Quantity, Record};
+use fmm_record::Quantity;
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
@@ -56,8 +56,7 @@ pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) 
     let as_quantity = |quantity: Quantity| {
         let retaken = |decay: &Experiment| {
             let record = decay.record();
-            let values = record.values().to_vec();
-            let record = Record::new(record.start(), record.interval(), values, quantity, "1").ok()?;
+            let record = record.clone().with_quantity(quantity).with_unit("1");
             Experiment::ring_down(&record, &Preparation::default()).ok()
         };
         let decays = decays.iter().map(retaken).collect::<Option<Vec<_>>>()?;
@@ -72,7 +71,8 @@ pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) 
 }
 
 /// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that
-/// it leaves out; `None` if nothing is left to explain, a filter is known or there is no vibration.
+/// it leaves out; `None` if nothing is left to explain, a filter is known the samples are unequally spaced, or there is no
+/// vibration.
 ///
 /// # Errors
 /// Of a record that the filter leaves too little of, or of the fit.
@@ -80,7 +80,9 @@ pub(crate) fn behind_filter(
     decays: &[Experiment],
     identifications: &[Identification],
 ) -> Result<Option<(Identification, f64)>, IdentifyError> {
-    let is_known = |decay: &Experiment| decay.sensor().low_pass().is_some() || decay.drive().is_some();
+    let is_known = |decay: &Experiment| {
+        decay.sensor().low_pass().is_some() || decay.drive().is_some() || !decay.record().is_equally_spaced()
+    };
     // Forces along motions have no such sensor.
     if decays.is_empty() || decays.iter().any(is_known) {
         return Ok(None);

@@ -131,8 +131,7 @@ pub(super) fn predicted(
                 *value += noise;
                 noise = correlation * noise + innovation * normal(random);
             }
-            let record = experiment.record();
-            let replicate = Record::new(record.start(), record.interval(), values, record.quantity(), record.unit());
+            let replicate = experiment.record().with_values(values);
             replicated.extend(replicate.ok().and_then(|record| Features::of(&record)));
         }
         let last = measured.peaks.len().saturating_sub(1);

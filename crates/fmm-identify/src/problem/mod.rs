@@ -212,8 +212,7 @@ impl<'a> Problem<'a> {
         let experiment = &self.experiments[record];
         let motion = self.motion::<D>(record, p, directions)?;
         let mut sight = Sight::of(experiment, self.corner(record, p));
-        let series = experiment.record();
-        let sampling = Sampling::uniform(series.interval(), series.len())?.keeping(sight.channels());
+        let sampling = experiment.sampling()?.keeping(sight.channels());
         let mut trajectory = Trajectory::new();
         let mut before = 0;
         // A filter sees all samples in turn.

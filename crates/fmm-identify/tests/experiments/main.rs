@@ -13,4 +13,5 @@ mod no_friction;
 mod same_statement;
 mod simulated;
 mod springs;
+mod unequal_times;
 mod unseen_damping;
