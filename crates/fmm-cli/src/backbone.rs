@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let input = arguments.given.read()?;
     input.warn();
     let decay = Experiment::ring_down(&input.record, &arguments.given.preparation())?;
-    let record = decay.record().clone();
+    let record = decay.record().equally_spaced().into_owned();
     let mut options = match arguments.given.mode {
         Some(mode) => mode.options(&record)?,
         None => BackboneOptions::default(),

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args};
+use fmm_model::Rounded;
 use fmm_record::{
     Column, DataFile, Format, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit,
 };
@@ -182,6 +183,8 @@ impl Choice {
     /// The reader of the part that is used, without its clock.
     fn reader(&self) -> Reader {
         let reader = self.layout.reader();
+        // A drive is read between its samples.
+        let reader = if self.is_drive { reader } else { reader.any_spacing() };
         let reader = self.from.map_or(reader.clone(), |from| reader.from(from));
         self.to.map_or(reader.clone(), |to| reader.to(to))
     }
@@ -240,7 +243,9 @@ impl Choice {
             .into());
         }
         let (file, channel) = (files::name(path), label.name());
-        let origin = format!("{file}, channel {channel}: {meaning}; the sampling rate was {}", reading.sampling);
+        let spacing = spacing(&reading.record);
+        let origin =
+            format!("{file}, channel {channel}: {meaning}; the sampling rate was {}{spacing}", reading.sampling);
         let record = reading.record.scaled(meaning.factor, meaning.unit)?.with_quantity(meaning.quantity);
         Ok(Input { record, origin, warnings })
     }
@@ -257,4 +262,20 @@ impl Choice {
             _ => format!("{error}; write the unit into the name of the channel, as in \"base [m/s^2]\"").into(),
         }
     }
+}
+
+/// The end of a sentence about the rate of a record that is unequally spaced; nothing for others.
+fn spacing(record: &Record) -> String {
+    if record.is_equally_spaced() {
+        return String::new();
+    }
+    let steps = record.times().zip(record.times().skip(1));
+    let longest = steps.max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)));
+    let (before, after) = longest.unwrap_or((record.start(), record.end()));
+    let digits = |value: f64| format!("{value:.5e}").parse().map_or_else(|_| value.to_string(), Rounded::every_digit);
+    let [shortest, longest, before, after] = [record.steps().0, record.steps().1, before, after].map(digits);
+    format!(
+        "; the times are {shortest} to {longest} s apart (the longest step from {before} to {after} s) and are fitted \
+         as they are, while swings, noise and spikes are looked for at equal steps; --rate takes the samples as uniform"
+    )
 }

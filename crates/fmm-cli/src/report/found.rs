@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use fmm_identify::{Comparison, Experiment, Finding, FrictionCurve, FrictionLevel};
-use fmm_record::{Record, Swings};
+use fmm_record::Swings;
 use serde::Serialize;
 
 use crate::figure::{Panel, Role, label};
@@ -99,7 +99,7 @@ impl Pictures {
         );
         let offset = preferred.finding("offset").map_or(0.0, Finding::value);
         let measured = decay.peaks().iter().map(|(time, value)| (*time, (value - offset).abs()));
-        let swings = Swings::of(&Record::new(record.start(), record.interval(), model, quantity, unit)?);
+        let swings = Swings::of(&record.with_values(model)?);
         let fitted = swings.peaks().iter().map(|peak| (peak.time, (peak.value - offset).abs()));
         let amplitude = Panel::new("time / s", label("amplitude of each half swing", unit), 380.0)
             .with(Role::Points, "measured", measured)

@@ -170,7 +170,7 @@ fn residuals(found: &Found, pictures: &Pictures) -> String {
 fn amplitude(found: &Found, pictures: &Pictures) -> String {
     let amplitudes =
         figure(&drawn(&pictures.amplitude), "The amplitude of each half swing, measured and fitted.", "amplitude");
-    let record = found.decay.record();
+    let record = &*found.decay.record().equally_spaced();
     let backbone = Backbone::of(record, &BackboneOptions::default()).ok().filter(|_| found.decay.drive().is_none());
     let backbone = backbone.map_or_else(String::new, |backbone| {
         let suggestion = backbone.suggestion();
