@@ -30,6 +30,8 @@ pub enum Source {
     Timing,
     /// The steadiness of the friction that was declared.
     Steadiness,
+    /// Noise of a motion that was measured beside a force, and its averaging.
+    Motion,
     /// Laws that the records do not exclude, and that would give another value.
     OtherLaws,
 }
@@ -47,6 +49,7 @@ impl fmt::Display for Source {
             Self::Clock => "clock of the record",
             Self::Timing => "time of the pulse",
             Self::Steadiness => "steadiness of the friction",
+            Self::Motion => "noise of the motion",
             Self::OtherLaws => "laws that are not excluded",
         })
     }
@@ -107,6 +110,12 @@ impl Finding {
         if let Some(parts) = &mut self.parts {
             parts.push((source, uncertainty * uncertainty));
         }
+    }
+
+    /// Variance by `source`, in the unit of the parameter squared.
+    pub(crate) fn part(&self, source: Source) -> f64 {
+        let parts = self.parts.iter().flatten().filter(|(own, _)| *own == source);
+        parts.map(|(_, variance)| variance).sum()
     }
 
     /// True if what follows from the machine has a square, as its variance needs one.

@@ -4,6 +4,7 @@ use fmm_fit::Fit;
 
 use crate::experiment::clock::Clock;
 use crate::finding::{Finding, Origin, Source};
+use crate::identification::force::MotionNoise;
 use crate::machine::Machine;
 use crate::quantities::derived::{Derived, Inputs, KNOWN};
 use crate::quantities::table::Table;
@@ -20,6 +21,7 @@ pub(crate) fn findings(
     covariance: &Covariance,
     gain_uncertainty: f64,
     clock: &Clock,
+    motion_noise: &MotionNoise,
 ) -> Vec<Finding> {
     let count = fit.values().len();
     let by_clock: Vec<f64> = (0..count)
@@ -31,7 +33,8 @@ pub(crate) fn findings(
         let gain = gain_uncertainty * table.power_of_gain(index, fit.values()) * estimate.value();
         let mut gradient = vec![0.0; count];
         gradient[index] = 1.0;
-        let known = [(Source::Gain, gain), (Source::Clock, by_clock[index])];
+        let by_motion = motion_noise.along(&gradient);
+        let known = [(Source::Gain, gain), (Source::Clock, by_clock[index]), (Source::Motion, by_motion)];
         let parts = variances(covariance, &gradient, &known, false);
         let relaxed = Some(estimate).filter(|estimate| estimate.status().is_at_bound()).and(covariance.relaxed(index));
         let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
@@ -49,7 +52,7 @@ pub(crate) fn findings(
             .into_iter()
             .zip(by_known)
             .map(|((source, u), slope)| (source, slope * u))
-            .chain([(Source::Clock, by_clock)])
+            .chain([(Source::Clock, by_clock), (Source::Motion, motion_noise.along(by_shared))])
             .collect();
         let parts = variances(covariance, by_shared, &known, false);
         let relaxed = variances(covariance, by_shared, &known, true);

@@ -3,9 +3,12 @@
 use fmm_fit::{EvaluationError, Fit, Options, Residuals, solve};
 
 use crate::error::IdentifyError;
-use crate::experiment::force::{ForceRecord, deviation};
+use crate::experiment::force::{AveragedNoise, ForceRecord, deviation};
+use crate::finding::{Finding, Source};
 use crate::identification::Identification;
+use crate::problem::Problem;
 use crate::problem::force::ForceProblem;
+use crate::problem::tangent::Tangent;
 use crate::warning::Warning;
 
 /// Results of a fit to forces, beside those of every identification.
@@ -22,9 +25,16 @@ pub(super) struct ForceResults {
     samples: usize,
     /// Friction in the mean of the way of the record that a force drives, in the unit of the force, if there is one.
     driving: Option<f64>,
+    /// The largest noise of the motions that was averaged, if there was any.
+    noise_of_motion: Option<AveragedNoise>,
+    /// Root mean square of the force that this leaves in the residuals.
+    by_motion: f64,
     /// Degrees of freedom of all residuals over those of the counting ones (1).
     pub(super) spread: f64,
 }
+
+/// Residuals over those that noise explains (1) up to which a law leaves nothing out.
+const EXPLAINED: f64 = 1.5;
 
 /// Agreement of a model with the forces of a record to which it was not fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +64,7 @@ impl Validation {
 
 impl ForceResults {
     /// Those of a `fit` of `forces`.
-    pub(super) fn of(forces: &ForceProblem<'_>, fit: &Fit) -> Self {
+    pub(super) fn of(forces: &ForceProblem<'_>, fit: &Fit, motion: &MotionNoise) -> Self {
         let (counts, records) = (forces.counts(fit.values()), forces.records());
         // Samples that do not count leave no residual, but look like rows without noise.
         let (all, counted) = (counts.len(), counts.iter().filter(|counts| **counts).count());
@@ -67,7 +77,9 @@ impl ForceResults {
             samples += record.len();
         }
         let driving = records.iter().find_map(ForceRecord::driving_friction);
-        Self { deviation: deviation(records), units, counts, places, samples, driving, spread }
+        let noise_of_motion = forces.noise_of_motion();
+        let (deviation, by_motion) = (deviation(records), motion.residual);
+        Self { deviation, units, counts, places, samples, driving, noise_of_motion, by_motion, spread }
     }
 
     /// The `residuals` that count, each at its sample among those of all records.
@@ -85,6 +97,57 @@ impl ForceResults {
     }
 }
 
+/// What noise of a measured motion, and its averaging, does to a fit of forces: it bends what is not proportional to the
+/// motion, turns directions, and makes factors too small where squares of it are summed.
+#[derive(Debug, Clone, Default)]
+pub(super) struct MotionNoise {
+    /// Steps by which the fit would follow the other motions that the records may be along, all values each; their
+    /// squares are summed.
+    steps: Vec<Vec<f64>>,
+    /// Root mean square of the force that it leaves in the residuals.
+    residual: f64,
+}
+
+impl MotionNoise {
+    /// That of a `fit` of `problem`; none for vibrations.
+    pub(super) fn of(problem: &Problem<'_>, fit: &Fit) -> Self {
+        let Some(forces) = problem.forces() else { return Self::default() };
+        let others: Vec<Vec<(f64, ForceRecord)>> = forces.records().iter().map(ForceRecord::along_others).collect();
+        let own = Tangent::of(problem, fit).map(|tangent| tangent.all_steps(fit.residuals()));
+        let (Some(own), Some(count)) = (own, others.iter().map(Vec::len).max()) else { return Self::default() };
+        let mut noise = Self::default();
+        for number in 0..count {
+            let weight = others.iter().filter_map(|of| of.get(number)).map(|(weight, _)| *weight).fold(0.0, f64::max);
+            let pairs = others.iter().zip(forces.records());
+            let records: Vec<ForceRecord> =
+                pairs.map(|(of, own)| of.get(number).map_or(own, |(_, other)| other).clone()).collect();
+            let Some((steps, residuals)) = along(problem, fit, &records) else { continue };
+            let steps: Vec<f64> = steps.iter().zip(&own).map(|(step, own)| weight * (step - own)).collect();
+            let changes = residuals.iter().zip(fit.residuals()).map(|(other, own)| (weight * (other - own)).powi(2));
+            let change = changes.sum::<f64>() / residuals.len() as f64;
+            if change.is_finite() && steps.iter().all(|step| step.is_finite()) {
+                noise.residual = noise.residual.hypot(change.sqrt());
+                noise.steps.push(steps);
+            }
+        }
+        noise
+    }
+
+    /// Standard uncertainty by it of what has this `gradient` over the first of the fitted values.
+    pub(super) fn along(&self, gradient: &[f64]) -> f64 {
+        let along = |steps: &Vec<f64>| steps.iter().zip(gradient).map(|(step, slope)| step * slope).sum::<f64>();
+        self.steps.iter().map(|steps| along(steps).powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// The steps by which a `fit` of `problem` would follow these `records` in the place of its own, and its residuals.
+fn along(problem: &Problem<'_>, fit: &Fit, records: &[ForceRecord]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let problem = Problem::of(&problem.candidate(), problem.machine, records).ok()?;
+    let mut residuals = vec![0.0; problem.len()];
+    problem.evaluate(fit.values(), &mut residuals, None).ok()?;
+    Some((Tangent::of(&problem, fit)?.all_steps(&residuals), residuals))
+}
+
 impl Warning {
     /// Limits of an `identification` of forces in this `unit`.
     pub(super) fn of_force(identification: &Identification, unit: &str) -> Vec<Self> {
@@ -95,14 +158,33 @@ impl Warning {
             warnings.extend(driving);
             let fitted = Validation { rms: identification.rms_residual(), force: forces.deviation };
             warnings.extend(fitted.worse_than_none(identification.law(), true));
+            warnings.extend(Self::of_motion_noise(identification, forces.noise_of_motion));
         }
-        if structure.is_structured() {
+        let forces = identification.forces.as_ref();
+        let by_motion = forces.map_or(0.0, |forces| forces.by_motion);
+        // What noise of the motion leaves is nothing that the law leaves out.
+        if structure.is_structured() && structure.residual > EXPLAINED * by_motion.hypot(structure.noise) {
             let (residual, noise, unit) = (structure.residual, structure.noise, unit.to_owned());
             warnings.push(Self::StructuredResiduals { residual, noise, unit, inflation });
         }
         warnings.extend(structure.coloured_noise(inflation));
         Self::of_fit(identification.fit(), &mut warnings);
         warnings
+    }
+
+    /// Warning about `noise` of the motion, or about samples that are too far apart, on which findings are more uncertain
+    /// than by the residuals, if any is.
+    fn of_motion_noise(identification: &Identification, noise: Option<AveragedNoise>) -> Option<Self> {
+        let findings = identification.findings.iter();
+        let rests_on = |finding: &&Finding| finding.part(Source::Motion) > finding.part(Source::Residuals);
+        let names: Vec<&str> = findings.filter(rests_on).map(|finding| finding.parameter().name()).collect();
+        let parameters = names.join(", ");
+        (!names.is_empty()).then_some(match noise {
+            Some(AveragedNoise { quantity, share, samples }) => {
+                Self::NoisyMotion { quantity, share, samples, parameters }
+            }
+            None => Self::CoarseMotion { parameters },
+        })
     }
 }
 

@@ -22,7 +22,7 @@ use crate::finding::Finding;
 use crate::fit::stages::{Begin, Observer, fit_begun};
 use crate::identification::drift::{as_fitted, with_drift};
 use crate::identification::findings::findings;
-use crate::identification::force::ForceResults;
+use crate::identification::force::{ForceResults, MotionNoise};
 use crate::law::Law;
 use crate::law::naming::LINEAR;
 use crate::law::naming::{Form, level_name};
@@ -94,7 +94,8 @@ impl Identification {
     ) -> Result<Self, IdentifyError> {
         let fit = fit_begun(problem, begin, options, observer)?;
         let (table, machine, decays) = (&problem.table, &problem.machine, problem.experiments());
-        let forces = problem.forces().map(|forces| ForceResults::of(&forces, &fit));
+        let motion_noise = MotionNoise::of(problem, &fit);
+        let forces = problem.forces().map(|forces| ForceResults::of(&forces, &fit, &motion_noise));
         let spread = forces.as_ref().map_or(1.0, |forces| forces.spread);
         // One instrument for all records; the worst statement counts.
         let gain = decays.iter().map(|decay| decay.summary().gain_uncertainty).fold(0.0, f64::max);
@@ -102,7 +103,7 @@ impl Identification {
         let mut structure = ResidualStructure::of(&fit, problem.records());
         structure.residual *= spread.sqrt();
         let covariance = Covariance::of(problem, &fit, &structure).map_err(failure)?.times(spread);
-        let findings = findings(machine, table, &fit, &covariance, gain, &Clock::of(decays));
+        let findings = findings(machine, table, &fit, &covariance, gain, &Clock::of(decays), &motion_noise);
         if let Some(finding) = findings.iter().find(|finding| !finding.is_representable()) {
             return Err(IdentifyError::beyond_numbers(finding.parameter(), finding.value()));
         }

@@ -9,7 +9,7 @@ use fmm_model::{Bounds, Dual, Parameter, Scalar};
 use super::Problem;
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::force::ForceRecord;
+use crate::experiment::force::{AveragedNoise, ForceRecord};
 use crate::law::along::{Alignment, SampleLocation, locations};
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Machine;
@@ -139,6 +139,12 @@ pub(crate) struct ForceProblem<'p> {
 impl<'p> ForceProblem<'p> {
     pub(crate) fn records(&self) -> &'p [ForceRecord] {
         self.forces.records
+    }
+
+    /// The largest noise of a motion that was averaged, if there was any.
+    pub(crate) fn noise_of_motion(&self) -> Option<AveragedNoise> {
+        let noise = self.records().iter().filter_map(ForceRecord::noise_of_motion);
+        noise.max_by(|a, b| a.share.total_cmp(&b.share))
     }
 
     pub(crate) fn law(&self) -> &'p Law {

@@ -10,6 +10,8 @@ use crate::problem::Problem;
 pub(crate) struct Tangent {
     /// Places of these parameters among all.
     known: Vec<usize>,
+    /// Number of all.
+    parameters: usize,
     pub(crate) span: Span,
 }
 
@@ -18,12 +20,20 @@ impl Tangent {
     pub(crate) fn of(problem: &Problem<'_>, fit: &Fit) -> Option<Self> {
         let known: Vec<usize> = (0..fit.values().len()).filter(|i| fit.relaxed_covariance(*i, *i).is_some()).collect();
         let span = Span::of(problem.columns(fit.values(), &known).ok()?);
-        Some(Self { known, span })
+        Some(Self { known, parameters: fit.values().len(), span })
+    }
+
+    /// Changes of all parameters along the `direction`, 0 for those that the fit does not determine.
+    pub(crate) fn all_steps(&self, direction: &[f64]) -> Vec<f64> {
+        let mut steps = vec![0.0; self.parameters];
+        for (known, step) in self.known.iter().zip(self.span.steps(direction)) {
+            steps[*known] = step;
+        }
+        steps
     }
 
     /// Change of the parameter at place `index` among all, 0 if the fit does not determine it.
     pub(crate) fn step(&self, index: usize, direction: &[f64]) -> f64 {
-        let place = self.known.iter().position(|known| *known == index);
-        place.map_or(0.0, |place| self.span.steps(direction)[place])
+        self.all_steps(direction)[index]
     }
 }

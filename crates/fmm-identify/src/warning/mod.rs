@@ -71,6 +71,22 @@ pub enum Warning {
         /// True for the records that were fitted, false for one that was predicted.
         is_fitted: bool,
     },
+    /// Noise of a measured motion makes findings more uncertain than the residuals of the force do.
+    NoisyMotion {
+        /// The quantity with the largest noise, in a word.
+        quantity: &'static str,
+        /// Noise over the standard deviation of the quantity (1).
+        share: f64,
+        /// Samples over which it was averaged.
+        samples: usize,
+        /// Names of the parameters, separated by commas.
+        parameters: String,
+    },
+    /// Samples of a measured motion are so far apart that its slopes make findings more uncertain than the residuals do.
+    CoarseMotion {
+        /// Names of the parameters, separated by commas.
+        parameters: String,
+    },
     /// Another law predicts the records that were not fitted better than the one that fits best.
     OtherPredicts {
         /// Name of the law that fits best.

@@ -135,6 +135,17 @@ impl Warning {
                     to_three_digits(100.0 * share)
                 )
             }
+            Self::NoisyMotion { quantity, share, samples, parameters } => write!(
+                f,
+                "the measured {quantity} has noise of {} % of its deviation, which was averaged over {samples} samples; \
+                 what is left of it, and what averaging takes from the motion, is most of the uncertainty of {parameters}",
+                to_three_digits(100.0 * share)
+            ),
+            Self::CoarseMotion { parameters } => write!(
+                f,
+                "the samples of the motion are too far apart for its slopes, which are most of the uncertainty of \
+                 {parameters}: measure faster, or velocity and acceleration as well"
+            ),
             Self::OtherPredicts { fits, predicts } => write!(
                 f,
                 "{fits} fits best, but {predicts} predicts best what was not fitted, and is preferred for that"

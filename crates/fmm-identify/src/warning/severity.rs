@@ -52,6 +52,8 @@ impl Warning {
             | Self::Hum { .. }
             | Self::Rounded { .. }
             | Self::ColouredNoise { .. }
+            | Self::NoisyMotion { .. }
+            | Self::CoarseMotion { .. }
             | Self::TimeLimit
             | Self::FurtherHit { .. }
             | Self::Overload { .. }

@@ -10,6 +10,7 @@ mod friction_curve;
 mod impact;
 mod joint;
 mod no_friction;
+mod noisy_motion;
 mod same_statement;
 mod simulated;
 mod springs;

@@ -2,6 +2,7 @@
 
 mod direction;
 mod loops;
+mod measured;
 mod onset;
 mod smoothed;
 mod speed_curve;
@@ -10,10 +11,12 @@ use fmm_fit::median_deviation;
 use fmm_model::ModelError;
 
 pub use loops::ForceLoop;
+pub(crate) use measured::AveragedNoise;
 pub use onset::Onset;
 pub use speed_curve::SpeedBin;
 
 use crate::error::IdentifyError;
+use crate::experiment::force::measured::Measured;
 use crate::experiment::force::smoothed::Smoothed;
 use crate::law::along::MeasuredMotion;
 
@@ -32,6 +35,8 @@ use crate::law::along::MeasuredMotion;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceRecord {
     pub(crate) motion: MeasuredMotion,
+    /// The series behind the motion; none for steady states and for a part of a record.
+    measured: Measured,
     pub(crate) forces: Vec<f64>,
     pub(crate) loads: Option<Vec<f64>>,
     /// Channels that were measured beside the force, by name.
@@ -46,6 +51,8 @@ pub struct ForceRecord {
 const FEWEST_SAMPLES: usize = 3;
 /// Share of the largest speed up to which a contact is taken to rest by default (1).
 const REST: f64 = 1e-3;
+/// Deviations of the noise of the velocity (1) up to which it may rest: of 20 samples one has another direction beyond.
+const REST_BY_NOISE: f64 = 2.0;
 
 impl ForceRecord {
     /// A record of `positions` (m) and `forces` (N) at `times` (s). Noise and steps of the positions are averaged over
@@ -60,8 +67,8 @@ impl ForceRecord {
         require_times(times)?;
         require_series(times, positions, "position", "m")?;
         require_series(times, forces, "force", "N")?;
-        let Smoothed { values, slopes } = Smoothed::of(times, positions);
-        Self::along(times, values, forces).moving_at(&slopes)
+        let positions = Some(Smoothed::of(times, positions));
+        Self::along(times, Measured { positions, ..Measured::default() }, forces).moving()
     }
 
     /// A record of which `velocities` (m/s) were measured beside the `forces` (N) at `times` (s), and no positions:
@@ -73,13 +80,8 @@ impl ForceRecord {
         require_times(times)?;
         require_series(times, velocities, "velocity", "m/s")?;
         require_series(times, forces, "force", "N")?;
-        let mut position = 0.0;
-        let mut positions = vec![position];
-        for (times, velocities) in times.windows(2).zip(velocities.windows(2)) {
-            position += 0.5 * (velocities[0] + velocities[1]) * (times[1] - times[0]);
-            positions.push(position);
-        }
-        Self::along(times, positions, forces).moving_at(velocities)
+        let velocities = Some(Smoothed::of(times, velocities));
+        Self::along(times, Measured { velocities, ..Measured::default() }, forces).moving()
     }
 
     /// A record of steady states without a time: `forces` (N) at `velocities` (m/s), such as a measured Stribeck curve.
@@ -105,42 +107,49 @@ impl ForceRecord {
         require_times(&times)?;
         require_series(&times, velocities, "velocity", "m/s")?;
         require_series(&times, forces, "force", "N")?;
+        let velocities = Some(Smoothed::plain(&times, velocities.to_vec()));
+        let mut record = Self::along(&times, Measured { velocities, ..Measured::default() }, forces).moving()?;
         let nothing = vec![0.0; times.len()];
-        let mut record = Self::along(&times, nothing.clone(), forces).moving_at(velocities)?;
-        record.motion.accelerations = nothing;
+        (record.motion.positions, record.motion.accelerations) = (nothing.clone(), nothing);
         record.is_timeless = true;
         Ok(record)
     }
 
-    /// Forces along a motion without velocities yet.
-    fn along(times: &[f64], positions: Vec<f64>, forces: &[f64]) -> Self {
-        let motion = MeasuredMotion { times: times.to_vec(), positions, ..MeasuredMotion::default() };
+    /// Forces along what was `measured` of a motion.
+    fn along(times: &[f64], measured: Measured, forces: &[f64]) -> Self {
+        let motion = measured.motion(times, 0.0);
         let (position_unit, force_unit) = ("m".to_owned(), "N".to_owned());
         let (forces, loads, channels) = (forces.to_vec(), None, Vec::new());
-        Self { motion, forces, loads, channels, position_unit, force_unit, is_timeless: false }
+        Self { motion, measured, forces, loads, channels, position_unit, force_unit, is_timeless: false }
     }
 
-    fn moving_at(mut self, velocities: &[f64]) -> Result<Self, IdentifyError> {
-        let largest = velocities.iter().fold(0.0, |largest: f64, velocity| largest.max(velocity.abs()));
+    /// This record with the motion by what was measured of it, and at rest where its speed may be noise alone.
+    fn moving(mut self) -> Result<Self, IdentifyError> {
+        let times = std::mem::take(&mut self.motion.times);
+        self.motion = self.measured.motion(&times, 0.0);
+        let largest = self.velocities().iter().fold(0.0, |largest: f64, velocity| largest.max(velocity.abs()));
         ModelError::require_finite("velocity", largest, "m/s")?;
         if largest == 0.0 {
             return Err(IdentifyError::no_motion(self.motion.positions[0], "m"));
         }
-        self.motion.accelerations = Smoothed::of(&self.motion.times, velocities).slopes;
-        self.motion.velocities = velocities.to_vec();
-        self.motion.rest_speed = REST * largest;
+        let other = self.measured.noisier(&times);
+        let squares = other.velocities.iter().zip(self.velocities()).map(|(a, b)| (a - b).powi(2));
+        let noise = (squares.sum::<f64>() / times.len() as f64).sqrt();
+        self.motion.rest_speed = (REST * largest).max(REST_BY_NOISE * noise);
         Ok(self)
     }
 
-    /// This record with measured `velocities` (m/s), as they are; accelerations are the slopes of their cubics.
+    /// This record with measured `velocities` (m/s), of which noise and steps are averaged as those of the positions;
+    /// accelerations are the slopes of their cubics.
     ///
     /// # Errors
     /// Those of [`of_positions`](Self::of_positions), and [`IdentifyError::Contradiction`] for velocities that go with
     /// the slope of the positions, but are more than three times or less than a third of it, or of the other sign.
-    pub fn with_velocities(self, velocities: &[f64]) -> Result<Self, IdentifyError> {
+    pub fn with_velocities(mut self, velocities: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, velocities, "velocity", "m/s")?;
         self.require_slope(velocities)?;
-        self.moving_at(velocities)
+        self.measured.velocities = Some(Smoothed::of(self.times(), velocities));
+        self.moving()
     }
 
     /// Refuses velocities that are another multiple of the slope of the positions than noise and drift can make of
@@ -162,14 +171,14 @@ impl ForceRecord {
         Ok(())
     }
 
-    /// This record with measured `accelerations` (m/s²).
+    /// This record with measured `accelerations` (m/s²), their noise averaged.
     ///
     /// # Errors
     /// Those of [`of_positions`](Self::of_positions).
     pub fn with_accelerations(mut self, accelerations: &[f64]) -> Result<Self, IdentifyError> {
         require_series(&self.motion.times, accelerations, "acceleration", "m/s²")?;
-        self.motion.accelerations = accelerations.to_vec();
-        Ok(self)
+        self.measured.accelerations = Some(Smoothed::of(self.times(), accelerations));
+        self.moving()
     }
 
     /// This record with a measured normal load (N) at every sample, so that the levels of a law are coefficients.
@@ -299,6 +308,21 @@ impl ForceRecord {
         median_deviation(&bends, 0).unwrap_or(0.0) / 6.0_f64.sqrt()
     }
 
+    /// The largest noise of its motion that was averaged; `None` if there was none.
+    pub(crate) fn noise_of_motion(&self) -> Option<AveragedNoise> {
+        self.measured.noise()
+    }
+
+    /// This record along the motions that its own could be as well, by the noise of what was measured of it, each with
+    /// the weight (1) of its effects in a standard uncertainty; steady states have none.
+    pub(crate) fn along_others(&self) -> Vec<(f64, Self)> {
+        if self.is_timeless {
+            return Vec::new();
+        }
+        let others = self.measured.others(self.times(), self.motion.rest_speed);
+        others.into_iter().map(|(weight, motion)| (weight, Self { motion, ..self.clone() })).collect()
+    }
+
     /// The time (s) between two samples, in the mean.
     pub(crate) fn interval(&self) -> f64 {
         (self.motion.times[self.len() - 1] - self.motion.times[0]) / (self.len() - 1) as f64
@@ -320,6 +344,7 @@ impl ForceRecord {
                 accelerations: cut(&self.motion.accelerations),
                 rest_speed: self.motion.rest_speed,
             },
+            measured: Measured::default(),
             forces: cut(&self.forces),
             loads: self.loads.as_deref().map(cut),
             channels: self.channels.iter().map(|(name, values)| (name.clone(), cut(values))).collect(),
