@@ -66,7 +66,7 @@ pub(crate) fn formats(json: bool) -> Result<(), Box<dyn Error>> {
     }
     let lines = FORMATS.map(|(name, files)| format!("{name:<10} {files}\n"));
     print(format_args!(
-        "A format is told by what a file begins with, whatever its name; gzip may compress it.\n\n{}\n\
+        "A format is told by what a file begins with, whatever its name; gzip may compress it, and of a ZIP archive the largest file is read.\n\n{}\n\
          A channel is chosen by its name, its number or its quantity; `fmm identify FILE` says what was found in a file and what must be said.",
         lines.concat()
     ))

@@ -84,6 +84,10 @@ impl Span {
             let what = format!("the sampling rate must be positive and finite, but is {rate} Hz");
             return Err(RecordError::options(what));
         }
+        if self.lacking(&values).is_some() {
+            let times: Vec<f64> = (0..values.len()).map(|index| index as f64 / rate).collect();
+            return self.timed(&times, values);
+        }
         self.record(0.0, rate.recip(), values)
     }
 
@@ -92,6 +96,11 @@ impl Span {
         if times.len() != values.len() {
             let (times, values) = (times.len(), values.len());
             return Err(RecordError::time(None, format!("{times} time stamps were given for {values} values")));
+        }
+        if self.lacking(&values).is_some() {
+            let (times, values): (Vec<f64>, Vec<f64>) =
+                times.iter().zip(values).filter(|(_, value)| !value.is_nan()).unzip();
+            return self.timed(&times, values);
         }
         let is_inside = |time: &f64| self.from.is_none_or(|from| *time >= from) && self.to.is_none_or(|to| *time <= to);
         let inside = || {

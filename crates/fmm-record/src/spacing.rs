@@ -12,6 +12,13 @@ use crate::sampling::whole_hertz;
 use crate::units::Quantity;
 
 impl Span {
+    /// A sentence about `values` that are none (NaN), which leave a gap where any spacing is taken.
+    pub(crate) fn lacking(self, values: &[f64]) -> Option<String> {
+        let (count, length) = (values.iter().filter(|value| value.is_nan()).count(), values.len());
+        let is_some = self.is_any_spacing && count > 0 && count < length;
+        is_some.then(|| format!("{count} of {length} rows have no number in the channel and were left out"))
+    }
+
     /// The samples inside, of those at these times after `start` (s), as [`Record::crop`] takes them.
     pub(crate) fn samples_at(self, start: f64, elapsed: &[f64]) -> Result<Range<usize>, RecordError> {
         const ROUNDING: f64 = 1e-6;

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::format::utf_16;
+use super::format::{is_archive, utf_16};
+use super::packed;
 use super::{Format, Reader};
 use crate::error::RecordError;
 #[cfg(any(feature = "mat", feature = "npy"))]
@@ -102,7 +103,7 @@ impl Reader {
         self.parse(bytes)
     }
 
-    /// Opens the bytes of a file.
+    /// Opens the bytes of a file, or of the largest one in a ZIP archive.
     ///
     /// # Errors
     /// [`RecordError::UnknownFormat`] and [`RecordError::MissingFeature`] for the format; [`RecordError::Damaged`] and
@@ -111,8 +112,20 @@ impl Reader {
     pub fn parse(&self, bytes: impl Into<Vec<u8>>) -> Result<DataFile, RecordError> {
         let mut bytes = bytes.into();
         if bytes.starts_with(b"\x1F\x8B") {
-            bytes = unpacked(&bytes)?;
+            bytes = packed::unpacked(&bytes)?;
         }
+        if is_archive(&bytes[..bytes.len().min(HEAD)]) {
+            let (inside, remark) = packed::largest(&bytes)?;
+            // An archive in an archive may hold itself.
+            let mut file = self.parse_unpacked(inside)?;
+            file.remarks.extend(remark);
+            return Ok(file);
+        }
+        self.parse_unpacked(bytes)
+    }
+
+    /// [`Reader::parse`] of bytes that are not compressed as a whole.
+    fn parse_unpacked(&self, mut bytes: Vec<u8>) -> Result<DataFile, RecordError> {
         let head = &bytes[..bytes.len().min(HEAD)];
         let format = Format::of(head)?;
         if let (Format::Text, Some(order)) = (format, utf_16(head)) {
@@ -186,15 +199,17 @@ impl DataFile {
     /// Faults of the file that did not prevent reading it. Variables that cannot be read are
     /// named, with the reason.
     pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.remarks.clone();
         match &self.content {
-            Content::Text(_) => self.remarks.clone(),
+            Content::Text(_) => {}
             #[cfg(any(feature = "mat", feature = "npy"))]
             Content::Arrays(file) => {
                 let warning = |(name, reason): &(String, RecordError)| format!("{name} cannot be read: {reason}");
-                file.damaged.iter().map(warning).collect()
+                warnings.extend(file.damaged.iter().map(warning));
             }
-            Content::Universal(file) => file.warnings().to_vec(),
+            Content::Universal(file) => warnings.extend_from_slice(file.warnings()),
         }
+        warnings
     }
 
     /// The real numeric arrays of a MATLAB, HDF5 or NumPy file, in the order of the file; empty for other files.
@@ -312,21 +327,4 @@ impl DataFile {
         }
         Ok(reading)
     }
-}
-
-/// The file in a file that gzip compressed.
-#[cfg(feature = "gzip")]
-fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, RecordError> {
-    use crate::files::reading::{MOST_INFLATED, too_large};
-    let mut inside = Vec::new();
-    let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(MOST_INFLATED as u64 + 1);
-    decoder.read_to_end(&mut inside).map_err(|error| RecordError::undecoded("the gzip file is damaged", error))?;
-    if inside.len() > MOST_INFLATED { Err(too_large()) } else { Ok(inside) }
-}
-
-#[cfg(not(feature = "gzip"))]
-fn unpacked(_: &[u8]) -> Result<Vec<u8>, RecordError> {
-    let what =
-        "a file that gzip compressed is read with the feature \"gzip\" of fmm-record, which is off; or unpack it";
-    Err(RecordError::MissingFeature { what: what.into() })
 }

@@ -70,7 +70,7 @@ impl Format {
             return match () {
                 () if has(b"xl/") || has(b"opendocument.spreadsheet") => Ok(Self::Workbook),
                 () if has(b".npy") => Ok(Self::Numpy),
-                () => Err("a ZIP archive; unpack it"),
+                () => Err(ARCHIVE),
             };
         }
         if head.starts_with(b"\x93NUMPY") {
@@ -93,6 +93,9 @@ impl Format {
         if is_universal(head) {
             return Ok(Self::Universal);
         }
+        if is_catman(head) {
+            return Err("a binary file of catman; export it as ASCII or to MATLAB");
+        }
         // UTF-16 is text.
         if head.contains(&0) && utf_16(head).is_none() {
             return Err("neither text nor a binary format that is known; export its numbers as CSV");
@@ -102,12 +105,16 @@ impl Format {
 }
 
 /// Beginnings of other files, what they are, and how their numbers come out of them.
-const OTHERS: [(&[u8], &str); 20] = [
+const OTHERS: [(&[u8], &str); 24] = [
     (
         b"TDSm",
         "a TDMS file of LabVIEW; export it as text (LVM) or to MATLAB, or by npTDMS in Python: \
          TdmsFile.read(\"FILE\").as_dataframe(time_index=True).to_csv(\"record.csv\")",
     ),
+    (b"|CF,", "a file of imc FAMOS; export it as ASCII or to MATLAB"),
+    (b"WAVEDESC", "a waveform of LeCroy; save it as text or to MATLAB"),
+    (b":WFM", "a waveform of Tektronix (ISF or WFM); save it as a spreadsheet (CSV)"),
+    (b":CURV", "a waveform of Tektronix (ISF); save it as a spreadsheet (CSV)"),
     (b"MDF     ", "an MDF file; export it as CSV or to MATLAB, as asammdf does"),
     (b"PAR1", "a Parquet file; save it as CSV, as pandas does by to_csv"),
     (b"ARROW1", "a Feather file; save it as CSV, as pandas does by to_csv"),
@@ -129,9 +136,22 @@ const OTHERS: [(&[u8], &str); 20] = [
     (b"<html", DOCUMENT),
 ];
 
+const ARCHIVE: &str = "a ZIP archive in an archive; unpack it";
+
 const DOCUMENT: &str = "a document of XML or HTML; export its table as CSV";
 
 const PICKLE: &str = "a pickle of Python; save its arrays by numpy.savez or as CSV";
+
+/// True for an archive that is no workbook and holds no arrays.
+pub(super) fn is_archive(head: &[u8]) -> bool {
+    head.starts_with(b"PK\x03\x04") && Format::found(head) == Err(ARCHIVE)
+}
+
+/// True for a binary file of catman: the number of its version, the place of its data, and the length of a comment.
+fn is_catman(head: &[u8]) -> bool {
+    let number = |at: usize| head.get(at..at + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    (5001..=5020).contains(&number(0)) && head.get(4..6) == Some(&[0, 0])
+}
 
 /// The order of bytes in UTF-16 text: by its mark, or by zeros in every second place; `None` for other text.
 pub(super) fn utf_16(head: &[u8]) -> Option<ByteOrder> {
@@ -221,7 +241,10 @@ mod tests {
         assert_eq!(Format::found(b"PK\x03\x04\0\0[Content_Types].xml\0xl/workbook.xml"), Ok(Format::Workbook));
         assert_eq!(Format::found(b"RIFF\0\0\0\0WAVE"), Ok(Format::Wav));
         for (head, word) in [
-            (&b"PK\x03\x04\0\0word/document.xml"[..], "ZIP"),
+            (&b"\x94\x13\x90\x01\0\0\x04\0cat1"[..], "catman"),
+            (b"|CF,2,1,1;|CK,1,3,1,1;\0", "FAMOS"),
+            (b":WFMPRE:BYT_NR 2;ENC BIN;:CURVE #43000\0\x01", "Tektronix"),
+            (b"PK\x03\x04\0\0word/document.xml", "ZIP"),
             (b"TDSm\x0E\0", "npTDMS"),
             (b"%PDF-1.7", "PDF"),
             (b"PAR1\x15\0", "Parquet"),

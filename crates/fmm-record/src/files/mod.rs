@@ -11,6 +11,7 @@ mod mat;
 #[cfg(feature = "npy")]
 mod npy;
 mod number;
+mod packed;
 pub(crate) mod reading;
 #[cfg(any(feature = "json", feature = "wav", feature = "workbook"))]
 mod tables;
@@ -54,13 +55,14 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 ///
 /// # Text
 ///
-/// Comma, semicolon or tab separated, or aligned by blanks, in UTF-8 or UTF-16. Files of LabVIEW (`.lvm`),
-/// SignalExpress, Tektronix, Rigol, PicoScope and catman and the `sep=` of Excel need nothing said. Sheets of
+/// Separated by commas, semicolons, tabs or bars, or aligned by blanks, in UTF-8 or UTF-16. Files of LabVIEW (`.lvm`),
+/// SignalExpress, Tektronix, Rigol, PicoScope and catman, the `sep=` of Excel, and lines of a serial port with a time of
+/// day before an arrow or a name before each number need nothing said. Of a ZIP archive the largest file is read. Sheets of
 /// workbooks, JSON and sound are read by the same rules; the whole numbers of a sound are counts.
 ///
 /// | what | found by default |
 /// |---|---|
-/// | separator | semicolon or tab if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
+/// | separator | semicolon, tab or bar if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
 /// | first row | the first line with as many fields as the last ones have, and numbers where they have numbers |
 /// | names | the line above the first row, with the units of a row of units; or a comment there, if it names the time |
 /// | decimal comma | where it is used throughout, between quotes if commas separate columns; one column of whole numbers with commas is refused if it may be two |

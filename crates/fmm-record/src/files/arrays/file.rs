@@ -139,6 +139,7 @@ impl ArrayFile {
             let around = || self.times(array, values.len()).next();
             if is_stated { None } else { around().map(|time| Slice::of(time, Series::Whole)) }
         });
+        let remarks: Vec<String> = reader.span.lacking(&values).into_iter().collect();
         let (record, sampling) = if let Some(rate) = reader.rate {
             (reader.span.sampled(rate, values)?, Sampling::Given { rate })
         } else if let Some(time) = &time {
@@ -159,14 +160,7 @@ impl ArrayFile {
         };
         let time = time.map(|time| time.written(self.notation));
         let record = record.with_unit(self.unit(array.name()));
-        Ok(Reading {
-            record,
-            channel: channel.written(self.notation),
-            time,
-            columns: self.names(),
-            sampling,
-            remarks: Vec::new(),
-        })
+        Ok(Reading { record, channel: channel.written(self.notation), time, columns: self.names(), sampling, remarks })
     }
 
     /// The channel with its row or column, where the array is a matrix.

@@ -116,6 +116,11 @@ pub(super) fn number(field: &[u8]) -> Option<(f64, Option<char>)> {
     if let Ok(value) = text.parse::<f64>() {
         return Some((value, text.contains('.').then_some('.')));
     }
+    if let Some((mantissa, exponent)) = text.split_once(['d', 'D']).filter(|(mantissa, _)| !mantissa.is_empty()) {
+        // Fortran writes numbers of double precision so.
+        exponent.parse::<i32>().ok()?;
+        return number(format!("{mantissa}e{exponent}").as_bytes());
+    }
     // The last mark that stands only once is the decimal mark.
     let decimal = text.rfind([',', '.']).filter(|at| text.matches(&text[*at..=*at]).count() == 1);
     let (whole, rest) = text.split_at(decimal.unwrap_or(text.len()));
@@ -147,14 +152,14 @@ fn without_groups(whole: &str) -> Option<(String, Option<char>)> {
     (begins && goes_on).then(|| (whole.replace(mark, ""), Some(mark)))
 }
 
-/// True for a number and for a time of day.
+/// True for a number, but for what stands for none (`NaN`), and for a time of day.
 pub(super) fn is_value(field: &[u8]) -> bool {
-    number(field).is_some() || Stamp::of(field).is_some()
+    number(field).is_some_and(|(value, _)| !value.is_nan()) || Stamp::of(field).is_some()
 }
 
 /// Length of a written number: digits behind the decimal mark, and characters of its exponent and of the rest.
 pub(super) fn digits(field: &[u8]) -> [usize; 3] {
-    let exponent = field.iter().position(|byte| matches!(byte, b'e' | b'E'));
+    let exponent = field.iter().position(|byte| matches!(byte, b'e' | b'E' | b'd' | b'D'));
     let mantissa = &field[..exponent.unwrap_or(field.len())];
     let mark = mantissa.iter().position(|byte| matches!(byte, b'.' | b','));
     let fraction = mark.map_or(0, |mark| mantissa.len() - mark - 1);
@@ -213,7 +218,23 @@ mod tests {
         assert_eq!(number(b"1.5"), Some((1.5, Some('.'))));
         assert_eq!(number(b"-1,5e-3"), Some((-1.5e-3, Some(','))));
         assert_eq!(number(b"+15"), Some((15.0, None)));
-        for text in ["", "1,234,5", "abc", ",", "0x10", "1 5", "1,", "1.23,5", "12.3456,7", "1,2,3", "1234.567,5"] {
+        assert_eq!(number(b"-1.25D-02"), Some((-0.0125, Some('.'))));
+        for text in [
+            "",
+            "1,234,5",
+            "abc",
+            ",",
+            "0x10",
+            "1 5",
+            "1,",
+            "1.23,5",
+            "12.3456,7",
+            "1D",
+            "D1",
+            "1d2.5",
+            "1,2,3",
+            "1234.567,5",
+        ] {
             assert_eq!(number(text.as_bytes()), None, "{text:?}");
         }
     }

@@ -46,10 +46,13 @@ pub(super) fn header(
         found.stated.extend(interval.map(|(interval, _)| ("dt".to_owned(), interval)));
         return Ok(found.named(names));
     }
-    let Some(last) = above.len().checked_sub(1).filter(|last| *last >= begin) else {
+    let commented = || {
         let comment = row.and_then(|row| row.comment.as_deref());
         let names = comment.and_then(|comment| names_in(comment, columns, separator));
-        return Ok(found.named(names.unwrap_or_else(|| positions(width))));
+        names.unwrap_or_else(|| positions(width))
+    };
+    let Some(last) = above.len().checked_sub(1).filter(|last| *last >= begin) else {
+        return Ok(found.named(commented()));
     };
     let Some(names) = fitting(last) else {
         let fields = Row::of(&above[last].text, separator).len();
@@ -57,7 +60,7 @@ pub(super) fn header(
             return Err(ragged(row.number, fields, width, separator));
         }
         // The end of a preamble.
-        return Ok(found.named(positions(width)));
+        return Ok(found.named(commented()));
     };
     let is_number = |column: &usize| number(names[*column].as_bytes()).is_some();
     let mut numbers = (0..width).filter(|column| columns[*column] == Kind::Number);

@@ -112,12 +112,12 @@ fn first_row(rows: &[Row], columns: &[Kind]) -> usize {
     first.unwrap_or_else(|| rows.iter().position(|row| row.len() == columns.len()).map_or(0, |header| header + 1))
 }
 
-/// The separator in the last two lines: a semicolon or a tab, where there is one, since a comma beside them is a
+/// The separator in the last two lines: a semicolon, a tab or a bar, where there is one, since a comma beside them is a
 /// decimal comma; blanks between nothing but numbers; else a comma.
 fn likely_separator(lines: &[Line]) -> Result<Separator, RecordError> {
     let last = || lines.iter().rev().take(2);
     let found = |separator: &u8| last().any(|line| line.text.contains(separator));
-    if let Some(sign) = [b';', b'\t'].into_iter().find(found) {
+    if let Some(sign) = [b';', b'\t', b'|'].into_iter().find(found) {
         return Ok(Separator::Sign(sign));
     }
     let are_aligned = |line: &Line| {

@@ -3,6 +3,7 @@
 use std::io::{BufRead, ErrorKind};
 use std::sync::Arc;
 
+use super::stamp::Stamp;
 use crate::error::RecordError;
 
 /// The longest line that is read (bytes). A file without line ends is refused instead of filling the memory.
@@ -47,7 +48,13 @@ impl<R: BufRead> Lines<R> {
             match line.text.iter().find(|byte| !byte.is_ascii_whitespace()) {
                 None => {}
                 Some(b'#' | b'%') => line.comment = Some(std::mem::take(&mut line.text)),
-                Some(_) => return Ok(true),
+                Some(_) => {
+                    separate_stamp(&mut line.text);
+                    if let Some((names, numbers)) = labelled(&line.text) {
+                        (line.comment, line.text) = (Some(names), numbers);
+                    }
+                    return Ok(true);
+                }
             }
         }
         Ok(false)
@@ -93,4 +100,35 @@ impl<R: BufRead> Lines<R> {
         }
         Ok(is_any)
     }
+}
+
+/// Puts a separator in place of the arrow behind the time of day that the monitor of a serial port writes before a
+/// line: the one that stands in the rest of it, or a tab.
+fn separate_stamp(line: &mut Vec<u8>) {
+    const ARROW: &[u8] = b" -> ";
+    let Some(at) = line.windows(ARROW.len()).position(|window| window == ARROW) else { return };
+    if Stamp::of(&line[..at]).is_none() {
+        return;
+    }
+    let rest = &line[at + ARROW.len()..];
+    let separator = [b';', b'\t', b','].into_iter().find(|sign| rest.contains(sign)).unwrap_or(b'\t');
+    line.splice(at..at + ARROW.len(), [separator]);
+}
+
+/// The names and the numbers of a line of nothing but such pairs, `ms:12 v:0.5`, as plotters of serial ports take them,
+/// each with tabs between; `None` for any other line.
+fn labelled(line: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
+    // Most lines have no colon, and are not looked at.
+    line.contains(&b':').then_some(())?;
+    let text = std::str::from_utf8(line).ok()?.replace(": ", ":");
+    let pairs = text.split([' ', '\t', ',', ';']).filter(|pair| !pair.is_empty());
+    let pairs: Vec<(&str, &str)> = pairs.map(|pair| pair.split_once(':')).collect::<Option<_>>()?;
+    let is_pair = |(name, value): &(&str, &str)| {
+        name.starts_with(|sign: char| sign.is_alphabetic()) && value.parse::<f64>().is_ok()
+    };
+    if pairs.len() < 2 || !pairs.iter().all(is_pair) {
+        return None;
+    }
+    let (names, numbers): (Vec<&str>, Vec<&str>) = pairs.into_iter().unzip();
+    Some((names.join("\t").into_bytes(), numbers.join("\t").into_bytes()))
 }

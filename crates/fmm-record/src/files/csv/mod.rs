@@ -112,7 +112,7 @@ impl Reader {
         chosen: [usize; N],
         found: &mut Found,
     ) -> Result<[Vec<f64>; N], RecordError> {
-        let mut rows: Rows<N> = table.read_columns(chosen, self.repairs)?;
+        let mut rows: Rows<N> = table.read_columns(chosen, self.repairs, self.span.is_any_spacing)?;
         let length = rows.columns[0].len();
         let bounds: Vec<usize> = [0].into_iter().chain(rows.begins.clone()).chain([length]).collect();
         let count = bounds.len() - 1;
@@ -160,7 +160,7 @@ impl Reader {
             Some(time) => Some(time),
             None if columns.len() > 1 && self.clock(&columns[first]).may_be_time() => {
                 // Text or gaps are no time either.
-                let rows = table.read_columns([first], self.repairs);
+                let rows = table.read_columns([first], self.repairs, false);
                 // Of two columns of numbers, the damaged one may be the time.
                 if let (Err(error @ RecordError::Damaged { .. }), 2) = (&rows, numbers) {
                     return Err(error.clone());
@@ -183,7 +183,8 @@ impl Reader {
         values: Vec<f64>,
         scale: Scale,
     ) -> Result<Reading, RecordError> {
-        let Found { columns, remarks, clock } = found;
+        let Found { columns, mut remarks, clock } = found;
+        remarks.extend(self.span.lacking(&values));
         let (time, channel) = (time.map(|index| columns[index].clone()), columns[channel].clone());
         let (record, sampling) = match scale {
             Scale::Rate((rate, sampling)) => (self.span.sampled(rate, values)?, sampling),

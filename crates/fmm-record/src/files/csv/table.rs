@@ -34,6 +34,8 @@ pub(super) struct Table<R> {
     heading: Vec<u8>,
     is_labview: bool,
     repairs: bool,
+    /// True if the channel may have rows without a number.
+    may_lack: bool,
 }
 
 /// The chosen columns of all rows.
@@ -75,7 +77,20 @@ impl<R: Read> Table<R> {
         let heading = first.checked_sub(1).map_or_else(Vec::new, |above| head[above].text.clone());
         let head = head.into_iter().skip(first).collect();
         let (fields, mark) = (Vec::new(), None);
-        Ok(Self { head, lines, line, fields, separator, columns, header, mark, heading, is_labview, repairs: false })
+        Ok(Self {
+            head,
+            lines,
+            line,
+            fields,
+            separator,
+            columns,
+            header,
+            mark,
+            heading,
+            is_labview,
+            repairs: false,
+            may_lack: false,
+        })
     }
 
     /// The first column that holds anything.
@@ -100,13 +115,15 @@ impl<R: Read> Table<R> {
     }
 
     /// Reads the chosen columns of all rows. With `repairs`, a damaged line is left out at the ends of the table, and
-    /// inside of it a straight line between its neighbours stands for it.
+    /// inside of it a straight line between its neighbours stands for it. Where the last of the columns `may_lack`
+    /// numbers, an empty field is one that is none (NaN), and rows in which all of them are empty are none.
     pub(super) fn read_columns<const N: usize>(
         mut self,
         chosen: [usize; N],
         repairs: bool,
+        may_lack: bool,
     ) -> Result<Rows<N>, RecordError> {
-        self.repairs = repairs;
+        (self.repairs, self.may_lack) = (repairs, may_lack && !repairs);
         let mut rows = Rows {
             columns: [const { Vec::new() }; N],
             clocks: [const { None }; N],
@@ -118,6 +135,9 @@ impl<R: Read> Table<R> {
         let mut least: Option<[usize; 3]> = None;
         let mut length = 0;
         while let Some(begins_table) = self.advance()? {
+            if N > 1 && self.may_lack && chosen.iter().all(|column| self.field(*column).is_empty()) {
+                continue;
+            }
             if begins_table && length > 0 {
                 rows.begins.push(length);
             }
@@ -163,6 +183,7 @@ impl<R: Read> Table<R> {
                     let first = self.shown(column);
                     stamps.get_or_insert_with(|| (first, Stamps::default())).1.elapsed(stamp)
                 }
+                _ if self.may_lack && column == chosen[N - 1] && self.field(column).is_empty() => f64::NAN,
                 _ => self.number(column)?,
             };
         }

@@ -152,3 +152,36 @@ fn oscilloscopes_and_loggers() {
         (&[0.15, 0.25, -0.1][..], 1000.0, "Dev1_ai0")
     );
 }
+
+#[test]
+fn monitors_of_serial_ports() {
+    let plain = reading("t;v\n0,000;1,5\n0,002;2,5\n0,004;-1\n").record.into_values();
+    for text in [
+        "boot\n10:11:12.000 -> 1.5\n10:11:12.002 -> 2.5\n10:11:12.004 -> -1\n",
+        "10:11:12.000 -> 7,1.5\n10:11:12.002 -> 7,2.5\n10:11:12.004 -> 7,-1\n",
+    ] {
+        let column = if text.contains(',') { 2 } else { 1 };
+        let found = Reader::default().time(0).channel(column).read_from(text).unwrap();
+        assert_eq!((found.record.values(), found.record.rate()), (&plain[..], 500.0), "{text}");
+    }
+}
+
+#[test]
+fn names_before_each_number() {
+    for text in ["boot\nms:0 v:1.5\nms:2 v:2.5\nms:4 v:-1\n", "t_s: 0, v: 1.5\nt_s: 0.002, v: 2.5\nt_s: 0.004, v: -1\n"]
+    {
+        let found = reading(text);
+        assert_eq!((&*found.channel, found.record.values(), found.record.rate()), ("v", &[1.5, 2.5, -1.0][..], 500.0));
+    }
+}
+
+#[test]
+fn fortran_and_bars() {
+    for text in [
+        "  0.000D+00   1.50D+00\n  2.000D-03   2.50D+00\n  4.000D-03  -1.00D+00\n",
+        "t [s] | v [m/s]\n0.000 | 1.5\n0.002 | 2.5\n0.004 | -1\n",
+    ] {
+        let found = reading(text).record;
+        assert_eq!((found.values(), found.rate()), (&[1.5, 2.5, -1.0][..], 500.0), "{text}");
+    }
+}

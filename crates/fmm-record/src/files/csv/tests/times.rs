@@ -193,3 +193,20 @@ fn a_gap_is_named_with_both_ends_and_the_record_beside_it_is_read() {
         "{rounded}"
     );
 }
+
+#[test]
+fn rows_without_a_number_leave_gaps_where_any_spacing_is_taken() {
+    let text = "t,v,T\n0,1,20\n1,,\n2,3,\n3,NaN,21\n4,5,\n5,6,\n";
+    let found = Reader::default().any_spacing().channel("v").read_from(text).unwrap();
+    assert_eq!((found.record.values(), found.record.time(1)), (&[1.0, 3.0, 5.0, 6.0][..], 2.0));
+    assert_eq!(found.remarks, ["2 of 6 rows have no number in the channel and were left out"]);
+    let slow = Reader::default().any_spacing().channel("T").read_from(text).unwrap().record;
+    assert_eq!((slow.values(), slow.end()), (&[20.0, 21.0][..], 3.0));
+    let own = "t_v,v,t_T,T\n0,1,0,20\n1,2,3,21\n2,3,,\n3,4,,\n";
+    let found = Reader::default().any_spacing().time("t_T").channel("T").read_from(own).unwrap();
+    assert_eq!((found.record.values(), found.remarks.len()), (&[20.0, 21.0][..], 0));
+    assert!(says(&Reader::default().channel("v").read_from(text), "line 3, column \"v\": \"\" is not a number"));
+    let repaired =
+        Reader::default().any_spacing().repair().channel("v").read_from("t,v\n0,1\n1,NaN\n2,3\n3,4\n").unwrap();
+    assert_eq!(repaired.record.values(), [1.0, 2.0, 3.0, 4.0]);
+}
