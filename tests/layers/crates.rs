@@ -54,6 +54,8 @@ const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
             ("csv", "reads the list of a campaign and writes its table"),
             ("indicatif", "shows how far a search is"),
             ("kuva", "draws the figures"),
+            RAND_CHACHA,
+            ("rand_distr", "normal variates of the noise of a simulated record"),
             ("rayon", "identifies several records at a time"),
             ("serde", "writes motions and campaigns as documents"),
             ("sha2", "names the input of a report"),

@@ -209,8 +209,15 @@ pub(crate) fn panels(record: &Record, backbone: &Backbone, suggestion: &Suggesti
     let spectrum = Spectrum::of(record.values());
     let per_line = spectrum.spacing * record.rate() / count as f64;
     let decibels = |square: &f64| 10.0 * square.max(f64::MIN_POSITIVE).log10();
-    let lines = spectrum.squares.iter().enumerate().skip(1).map(|(k, square)| (k as f64 * per_line, decibels(square)));
     let points = backbone.points();
+    let lines = spectrum.squares.iter().enumerate().skip(1).map(|(k, square)| (k as f64 * per_line, decibels(square)));
+    let lines: Vec<(f64, f64)> = lines.collect();
+    // Up to what is within 40 dB of the strongest line; beyond, a wide band of noise would hide it.
+    let mode = points.iter().map(|point| point.frequency.value).fold(0.0, f64::max);
+    let strongest = lines.iter().map(|(_, level)| *level).fold(f64::NEG_INFINITY, f64::max);
+    let seen = lines.iter().filter(|(_, level)| *level > strongest - 40.0).map(|(frequency, _)| *frequency);
+    let highest = 1.2 * seen.fold(5.0 * mode, f64::max);
+    let lines = lines.into_iter().filter(|(frequency, _)| *frequency <= highest);
     // An offset of the sensor is no part of the mode.
     let middle = record.values().iter().sum::<f64>() / count as f64;
     let envelope =

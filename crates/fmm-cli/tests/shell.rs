@@ -102,6 +102,24 @@ fn a_machine_without_friction_has_no_margin() {
     assert!(said.contains("no_friction.json: mass must be positive"), "{said}");
 }
 
+/// A simulated record is one for `fmm identify`, with the noise that was asked for.
+#[test]
+fn a_simulated_record_is_identified() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [scenario, record] = ["spring.json", "spring.csv"].map(|name| folder.join(name));
+    let machine = r#"{"oscillator": {"mass": 10, "stiffness": 2000}, "law": {"coulomb": {"mu": 0.1}}, "normal_load": 10,
+        "initial": {"position": 0.015}, "duration": 5}"#;
+    std::fs::write(&scenario, machine).unwrap();
+    let [scenario, record] = [&scenario, &record].map(|path| path.to_str().unwrap());
+    assert!(fmm(&["simulate", scenario, "--record", record, "--noise", "0.002"]).status.success());
+    let identified = ["identify", record, "--channel", "velocity", "--mass", "10", "--normal-load", "10", "--json"];
+    let document: serde_json::Value = serde_json::from_slice(&fmm(&identified).stdout).unwrap();
+    let mu = &document["models"][0]["parameters"]["mu"];
+    assert!((mu["value"].as_f64().unwrap() - 0.1).abs() < 0.002, "{mu}");
+    let refused = fmm(&["simulate", scenario, "--record", record, "--noise", "-1"]);
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("give a share of the largest value"));
+}
+
 /// Options that say something else than the file, or nothing that can be.
 #[test]
 fn what_is_wrong_is_named_with_what_would_be_right() {

@@ -1,6 +1,6 @@
 //! A campaign: which records, how each is read, and what describes it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -133,10 +133,11 @@ impl Campaign {
         self.entries.first().map_or_else(Vec::new, |entry| entry.description.keys().map(String::as_str).collect())
     }
 
-    /// Keeps the list in `folder`, in place of one that differs by its record sheet only, on which no row depends.
+    /// Keeps the list in `folder`, in the place of an earlier one of the same campaign: rows of entries that changed are
+    /// known by their contents, and made again.
     ///
     /// # Errors
-    /// If another campaign is there.
+    /// If a campaign by other options is there, or one of other records throughout.
     pub(crate) fn keep(&self, folder: &Path) -> Result<(), Box<dyn Error>> {
         create_folder(&folder.join("rows"))?;
         let path = folder.join(LIST);
@@ -144,7 +145,11 @@ impl Campaign {
         if kept.as_ref() == Some(self) {
             return Ok(());
         }
-        if kept.is_none_or(|kept| Self { sheet: self.sheet.clone(), ..kept } == *self) {
+        let is_same = |kept: Self| {
+            let files: BTreeSet<&PathBuf> = kept.entries.iter().map(|entry| &entry.file).collect();
+            kept.options == self.options && self.entries.iter().any(|entry| files.contains(&entry.file))
+        };
+        if kept.is_none_or(is_same) {
             return Ok(files::write(&path, &serde_json::to_string_pretty(self)?)?);
         }
         Err(format!(

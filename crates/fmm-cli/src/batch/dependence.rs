@@ -6,6 +6,7 @@ use fmm_model::{Estimated, Rounded};
 use serde::Serialize;
 
 use super::row::{Row, Told, in_unit, quantities};
+use super::table::probability;
 use crate::figure::ends;
 use crate::output::of_size;
 
@@ -201,10 +202,10 @@ impl Dependence {
                 let [slope, low, high] = [(line.slope, Some(line.slope_u)), (low, None), (high, None)]
                     .map(|(value, u)| Rounded::new(value, u).to_string());
                 let statement = format!(
-                    "{friction} {verb} {place} between {low} and {high}{axis}: it changes by {} per{per} (p = {:.1e}), from {} records \
+                    "{friction} {verb} {place} between {low} and {high}{axis}: it changes by {} per{per} (p {}), from {} records \
                      that scatter about the line by {} beyond their uncertainties",
                     in_unit(slope, unit),
-                    line.p,
+                    probability(line.p),
                     points.len(),
                     in_unit(of_size(line.between), unit),
                 );

@@ -48,7 +48,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with = "records")]
     manifest: Option<PathBuf>,
     /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json and
-    /// campaign.html; records that are there already are not done again
+    /// campaign.html; records that are there already, and whose file and entry did
+    /// not change, are not done again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Do this part of the records only, as in 2/10; `fmm merge` puts the parts together
@@ -164,9 +165,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         return give_out(&rows, &arguments.asked.summary(&campaign, &rows)?, arguments.json);
     };
     campaign.keep(folder)?;
+    let entries = &campaign.entries;
     let (part, parts) = arguments.shard.unwrap_or((1, 1));
-    let waiting: Vec<usize> =
-        (part - 1..campaign.entries.len()).step_by(parts).filter(|index| Row::read(folder, *index).is_none()).collect();
+    let waiting: Vec<usize> = (part - 1..entries.len())
+        .step_by(parts)
+        .filter(|index| Row::is_due(folder, *index, &entries[*index]))
+        .collect();
     in_parallel(&waiting, jobs, |index| Row::of(&campaign, index).write(folder, index))?;
     if arguments.shard.is_some() {
         eprintln!("part {part} of {parts} is done; `fmm merge {}` puts all together", folder.display());
@@ -182,7 +186,8 @@ pub(crate) fn merge(arguments: &Merge) -> Result<(), Box<dyn Error>> {
 }
 
 fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -> Result<(), Box<dyn Error>> {
-    let rows: Vec<Option<Row>> = (0..campaign.entries.len()).map(|index| Row::read(folder, index)).collect();
+    let entries = campaign.entries.iter().enumerate();
+    let rows: Vec<Option<Row>> = entries.map(|(index, entry)| Row::read(folder, index, entry)).collect();
     let missing = rows.iter().filter(|row| row.is_none()).count();
     if missing > 0 {
         return Err(format!(

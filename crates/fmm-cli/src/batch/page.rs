@@ -11,19 +11,28 @@ use super::manifest::EXCLUDE;
 use super::row::{Outcome, Row, Stated, quantities};
 use super::sheet::Field;
 use super::summary::{Quantity, Summary};
-use super::table::{apart_lines, group_lines, is_main, joint_lines, name, records_line, result_line, statement};
+use super::table::{
+    apart_lines, group_lines, is_main, joint_lines, name, probability, records_line, result_line, statement,
+};
 use crate::figure::{Panel, Role, drawn, label};
 use crate::files;
 use crate::output::of_size;
 use crate::page::{
     bullets, cell, escaped, figure, optional_cell, page as whole_page, paragraphs, row_heading, section, table,
-    text_cell,
+    text_cell, words,
 };
 
 /// The page of a campaign.
 pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> String {
     const TITLE: &str = "Friction of a campaign";
-    let shown = || summary.quantities.iter().filter(|quantity| is_main(&quantity.name));
+    // The result first, and of other measures of friction what is in the tables.
+    let main = summary.main();
+    let is_told = |quantity: &&Quantity| is_main(&quantity.name) && !is_friction(&quantity.name);
+    let of_result = |quantity: &&Quantity| main.is_some_and(|main| main.name == quantity.name);
+    let shown = || {
+        let first = summary.quantities.iter().filter(of_result);
+        first.chain(summary.quantities.iter().filter(move |quantity| is_told(quantity) && !of_result(quantity)))
+    };
     let pictures = shown().enumerate().map(|(i, quantity)| picture(rows, summary, quantity, i));
     let apart = bullets(apart_lines(summary));
     let apart = if apart.is_empty() { apart } else { section("Records that stand apart", &apart) };
@@ -85,7 +94,7 @@ fn budget(summary: &Summary) -> String {
     };
     let all = vec![row_heading("all, u"), text_cell(&of_size(quantity.u)), text_cell("100 %")];
     let rows = std::iter::once((own, of_records)).chain(shared).map(row).chain([all]);
-    let what = format!("Budget of {}", quantity.name.replace('_', " "));
+    let what = format!("Budget of {}", words(&quantity.name));
     section(&what, &table("budget", &["source", &label("u", &quantity.unit), "share of u²"], rows))
 }
 
@@ -103,7 +112,7 @@ fn statements<'a>(shown: impl Iterator<Item = &'a Quantity>) -> String {
 
 /// Consensus of the records, as two tables: results, and statistics.
 fn together(summary: &Summary) -> String {
-    let heading = |quantity: &Quantity| row_heading(&label(name(quantity).replace('_', " "), &quantity.unit));
+    let heading = |quantity: &Quantity| row_heading(&label(words(&name(quantity)), &quantity.unit));
     let result = |quantity: &Quantity| {
         let Quantity { mean, u, interval_95: [low, high], .. } = *quantity;
         let rounded = Rounded::new(mean, Some(u));
@@ -113,7 +122,10 @@ fn together(summary: &Summary) -> String {
             text_cell(&of_size(2.0 * u)),
             text_cell(&rounded.interval(low, high)),
             text_cell(&of_size(quantity.shared_u)),
-            text_cell(&format!("{} (+{})", quantity.records, quantity.left_out)),
+            text_cell(&match quantity.left_out {
+                0 => quantity.records.to_string(),
+                left_out => format!("{} (+{left_out})", quantity.records),
+            }),
         ]
     };
     let statistics =
@@ -124,7 +136,7 @@ fn together(summary: &Summary) -> String {
                 heading(quantity),
                 text_cell(&of_size(quantity.between)),
                 text_cell(&of_size(quantity.between_der_simonian_laird)),
-                text_cell(&format!("{:.1e}", quantity.p)),
+                text_cell(probability(quantity.p).trim_start_matches("= ")),
                 text_cell(&format!("{:.0} %", 100.0 * quantity.i_squared)),
                 text_cell(&Rounded::new(weighted, Some(claimed)).to_string()),
                 optional_cell(quantity.joint.map(|(value, u)| Rounded::new(value, u).to_string())),
@@ -209,7 +221,7 @@ fn records(campaign: &Campaign, rows: &[Row]) -> String {
     let mut headings: Vec<String> = vec!["record".to_owned()];
     headings.extend(columns.iter().map(ToString::to_string));
     headings.extend((!one_law).then(|| "law".to_owned()));
-    headings.extend(names.iter().map(|(name, unit)| label(name.replace('_', " "), unit)));
+    headings.extend(names.iter().map(|(name, unit)| label(words(name), unit)));
     headings.push("warnings".to_owned());
     let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
     let alike: Vec<String> = alike
@@ -249,10 +261,10 @@ fn dependences(summary: &Summary) -> String {
     let shown = summary.dependences.iter().enumerate().map(|(index, dependence)| {
         let Dependence { quantity, unit, against, against_unit, statement, line, points, .. } = dependence;
         let Some(Line { band, .. }) = line else { return format!("<p>{}</p>\n", escaped(statement)) };
-        let name = against.replace('_', " ");
+        let name = words(against);
         let x_label = if against_unit.is_empty() { name } else { label(name, against_unit) };
         let part = |value: fn(&(f64, f64, f64, f64)) -> f64| band.iter().map(move |at| (at.0, value(at)));
-        let panel = with_records(Panel::new(x_label, label(quantity.replace('_', " "), unit), 300.0), points)
+        let panel = with_records(Panel::new(x_label, label(words(quantity), unit), 300.0), points)
             .with(Role::Fitted, "line, with an effect of each record", part(|at| at.1))
             .with(Role::Reference, "its 95 % interval", part(|at| at.2))
             .with(Role::Reference, "", part(|at| at.3));
@@ -311,7 +323,7 @@ fn picture(rows: &[Row], summary: &Summary, quantity: &Quantity, index: usize) -
     let points = |told: Vec<((f64, f64, f64), bool)>| told.into_iter().map(|(point, _)| point).collect::<Vec<_>>();
     let ends = |value: f64| [(1.0, value), (rows.len() as f64, value)];
     let [low, high] = quantity.interval_95;
-    let panel = Panel::new("number of the record", label(name(quantity).replace('_', " "), &quantity.unit), 280.0);
+    let panel = Panel::new("number of the record", label(words(&name(quantity)), &quantity.unit), 280.0);
     let panel = with_records(panel, &points(counted))
         .with(Role::Fitted, "consensus", ends(quantity.mean))
         .with(Role::Reference, "its 95 % interval", ends(low))

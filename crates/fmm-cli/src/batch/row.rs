@@ -13,7 +13,7 @@ use fmm_uq::Budget;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::campaign::{Campaign, RecordOptions};
+use super::campaign::{Campaign, Entry, RecordOptions};
 use crate::files;
 
 /// Result of one record.
@@ -156,9 +156,18 @@ impl Row {
         folder.join("rows").join(format!("{index:07}.json"))
     }
 
-    /// The row of this index in a folder, if it was written.
-    pub(crate) fn read(folder: &Path, index: usize) -> Option<Self> {
-        serde_json::from_str(&std::fs::read_to_string(Self::path(folder, index)).ok()?).ok()
+    /// The row of this index in a folder, if it was written for this `entry` as it is.
+    pub(crate) fn read(folder: &Path, index: usize, entry: &Entry) -> Option<Self> {
+        let row: Self = serde_json::from_str(&std::fs::read_to_string(Self::path(folder, index)).ok()?).ok()?;
+        let is_same = row.file.to_string_lossy() == entry.file.to_string_lossy();
+        (is_same && row.description == entry.description).then_some(row)
+    }
+
+    /// True if the row of this index has to be made: there is none for this `entry`, or its record is newer.
+    pub(crate) fn is_due(folder: &Path, index: usize, entry: &Entry) -> bool {
+        let changed = |path: &Path| std::fs::metadata(path).and_then(|data| data.modified()).ok();
+        let is_newer = || changed(&entry.file).zip(changed(&Self::path(folder, index))).is_some_and(|(a, b)| a > b);
+        Self::read(folder, index, entry).is_none() || is_newer()
     }
 
     pub(crate) fn write(&self, folder: &Path, index: usize) -> Result<(), String> {

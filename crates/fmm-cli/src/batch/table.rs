@@ -126,7 +126,11 @@ pub(super) fn records_line(summary: &Summary) -> String {
 
 /// A small probability behind its letter.
 pub(super) fn probability(p: f64) -> String {
-    if p < 1e-9 { "< 1e-9".to_owned() } else { format!("= {p:.1e}") }
+    match p {
+        p if p < 1e-9 => "< 1e-9".to_owned(),
+        p if p < 0.01 => format!("= {p:.1e}"),
+        p => format!("= {p:.2}"),
+    }
 }
 
 /// Shared part of u, if there is one.
@@ -243,11 +247,13 @@ pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
     let [within, between, all] =
         [repeatability, between, reproducibility].map(|s| in_unit(of_size(*s), &quantity.unit));
     let count = groups.len();
-    let mut lines =
-        vec![format!("by {count} groups: s_r = {within}, between {between}, s_R = {all}; groups alike: p = {p:.2e}")];
+    let mut lines = vec![format!(
+        "by {count} groups: s_r = {within}, between {between}, s_R = {all}; groups alike: p {}",
+        probability(*p)
+    )];
     for (outlier, what) in [(farthest, "lies far off"), (widest, "scatters more than the others")] {
         if let Some((name, p)) = outlier.as_ref().filter(|(_, p)| *p < 0.05) {
-            lines.push(format!("group {name} {what} (p = {p:.1e})"));
+            lines.push(format!("group {name} {what} (p {})", probability(*p)));
         }
     }
     lines

@@ -77,7 +77,9 @@ fn any_split_gives_the_same_bytes() {
         let out = home.join(name);
         campaign.keep(&out).unwrap();
         for (part, parts) in parts {
-            for index in (part - 1..8).step_by(*parts).filter(|index| Row::read(&out, *index).is_none()) {
+            for index in
+                (part - 1..8).step_by(*parts).filter(|index| Row::is_due(&out, *index, &campaign.entries[*index]))
+            {
                 Row::of(&campaign, index).write(&out, index).unwrap();
             }
         }
@@ -88,7 +90,8 @@ fn any_split_gives_the_same_bytes() {
     assert!(
         whole == done("three", &[(3, 3), (1, 3), (2, 3), (1, 3)]) && whole == done("mixed", &[(2, 2), (1, 5), (1, 1)])
     );
-    let rows: Vec<Row> = (0..8).map(|index| Row::read(&home.join("whole"), index).unwrap()).collect();
+    let read = |index: usize| Row::read(&home.join("whole"), index, &campaign.entries[index]);
+    let rows: Vec<Row> = (0..8).map(|index| read(index).unwrap()).collect();
     assert_eq!(rows.iter().filter_map(Row::found).count(), 5);
     assert!(rows.iter().all(|row| !matches!(&row.outcome, Outcome::Refused(why) if why.is_empty())));
     // A row of which only a part was written is done again, and one that does not say what was stated.
@@ -97,7 +100,7 @@ fn any_split_gives_the_same_bytes() {
         home.join("whole/rows").join(format!("{:07}.json", rows.iter().position(|row| row.found().is_some()).unwrap()));
     let text = std::fs::read_to_string(&found).unwrap();
     std::fs::write(&found, text.replace("\"stated\":[],", "")).unwrap();
-    assert_eq!((0..8).filter(|index| Row::read(&home.join("whole"), *index).is_none()).count(), 2);
+    assert_eq!((0..8).filter(|index| read(*index).is_none()).count(), 2);
     assert!(whole == done("whole", &[(1, 1)]));
     // Another campaign does not go into the same folder.
     let other = Campaign { options: Vec::new(), ..campaign.clone() };
@@ -301,14 +304,19 @@ fn both_kinds_of_manifest_say_the_same() {
     let [from_table, from_list] = [rows(&table), rows(&list)];
     assert!(from_table == from_list && from_table.iter().all(|row| row.found().is_some()), "{from_table:?}");
     assert_eq!(table::csv(&table, &from_table).unwrap(), table::csv(&list, &from_list).unwrap());
-    // A sheet that changes is no other campaign; another mass is.
+    // A sheet that changes is no other campaign, nor is another mass, of which the row is made again.
     let out = home.join("out");
     list.keep(&out).unwrap();
     Campaign { sheet: None, ..list.clone() }.keep(&out).unwrap();
     assert_eq!(Campaign::read(&out).unwrap().sheet, None);
+    for (index, row) in from_list.iter().enumerate() {
+        row.write(&out, index).unwrap();
+    }
     let mut other = list.clone();
-    other.entries[0].options[0] = "--mass=11".to_owned();
-    assert!(other.keep(&out).is_err());
+    other.entries[0].description.insert("mass".to_owned(), "11".to_owned());
+    other.keep(&out).unwrap();
+    let due = |index: &usize| Row::is_due(&out, *index, &other.entries[*index]);
+    assert_eq!((0..other.entries.len()).filter(due).collect::<Vec<_>>(), [0]);
 }
 
 /// Friction in proportion to the load is seen, what is beside it as well, and a column that cannot be set against says
@@ -412,6 +420,32 @@ fn a_record_can_be_left_out() {
     assert!(rows[1].is_excluded && rows[1].outcome == Outcome::Refused("left out by the manifest".to_owned()));
 }
 
+/// What was excluded, corrected or added since, and what was measured anew, is done again in the same folder, and
+/// nothing else is.
+#[test]
+fn what_changed_is_done_again() {
+    let home = folder("changed");
+    records(&home, &[0.02, 0.0202, 0.03]);
+    let (manifest, out) = (home.join("runs.csv"), home.join("out"));
+    let listed = |lines: &str| {
+        std::fs::write(&manifest, format!("file,exclude,operator\n{lines}")).unwrap();
+        let campaign = Campaign::of_manifest(&manifest, law(), None).unwrap();
+        campaign.keep(&out).unwrap();
+        let due = |index: &usize| Row::is_due(&out, *index, &campaign.entries[*index]);
+        let due: Vec<usize> = (0..campaign.entries.len()).filter(due).collect();
+        for index in &due {
+            Row::of(&campaign, *index).write(&out, *index).unwrap();
+        }
+        due
+    };
+    assert_eq!(listed("run_00.csv,,A\nrun_01.csv,,B\n"), [0, 1]);
+    assert!(listed("run_00.csv,,A\nrun_01.csv,,B\n").is_empty());
+    assert_eq!(listed("run_00.csv,,A\nrun_01.csv,a finger,B\nrun_02.csv,,A\n"), [1, 2]);
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(5);
+    std::fs::File::options().append(true).open(home.join("run_02.csv")).unwrap().set_modified(later).unwrap();
+    assert_eq!(listed("run_00.csv,,A\nrun_01.csv,a finger,B\nrun_02.csv,,A\n"), [2]);
+}
+
 /// A name that is not Unicode is found, printed with a sign, and found again.
 #[cfg(unix)]
 #[test]
@@ -433,7 +467,10 @@ fn names_that_are_not_unicode_are_found() {
     let out = home.join("out");
     campaign.keep(&out).unwrap();
     all[0].write(&out, 0).unwrap();
-    assert!(Row::read(&out, 0).is_some_and(|row| row.found().is_some()) && Campaign::read(&out).unwrap() == campaign);
+    assert!(
+        Row::read(&out, 0, &campaign.entries[0]).is_some_and(|row| row.found().is_some())
+            && Campaign::read(&out).unwrap() == campaign
+    );
 }
 
 /// The fields of the sheet: given, known by the records, and not given.

@@ -14,13 +14,14 @@ use std::path::PathBuf;
 use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
 use crate::input::{Held, limit};
-use crate::output::{Output, pair, print, print_json, while_busy};
+use crate::output::{Output, of_size, pair, print, print_json, while_busy};
 use clap::Args;
 use columns::Columns;
 use fmm_identify::{
     Candidate, Comparison, ForceLoop, ForceRecord, Identification, IdentifyError, Inquiry, Machine, Onset, SpeedBin,
     Validation,
 };
+use fmm_model::Rounded;
 use serde_json::{Value, json};
 use source::{Source, Table};
 
@@ -200,6 +201,15 @@ fn without_a_law(record: &ForceRecord) -> Vec<String> {
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied()
     };
+    let bins = record.friction_over_speed(BINS);
+    if let (Some(slowest), Some(fastest)) = (bins.first(), bins.last()) {
+        let at = |bin: &SpeedBin| {
+            let friction = Rounded::new(bin.friction.value, Some(bin.friction.uncertainty));
+            let speed = of_size(bin.speed);
+            format!("{friction} {force} at {speed} {position}/s")
+        };
+        lines.push(format!("friction over speed, no law assumed: {}, {}", at(slowest), at(fastest)));
+    }
     let loops = record.loops();
     let of_loops = |value: fn(&ForceLoop) -> f64| median(loops.iter().map(value).collect());
     if let (Some(energy), Some(friction)) = (of_loops(|a| a.energy.value), of_loops(|a| a.friction.value)) {
@@ -226,7 +236,7 @@ fn speeds(record: &ForceRecord) -> Value {
         json!({
             "speed": bin.speed,
             "friction_u": pair(bin.friction),
-            "offset_u": pair(bin.offset),
+            "offset_u": bin.offset.map(pair),
             "load": bin.load,
             "coefficient_u": bin.coefficient().map(pair),
             "samples": bin.samples,
@@ -314,13 +324,24 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
     };
     let bins = record.friction_over_speed_and_load(BINS, LOADS);
     let (speed, friction, bins): (_, _, Vec<_>) = if bins.iter().any(|bin| bin.coefficient().is_some()) {
-        let point = |bin: &SpeedBin| Some((bin.speed_by_load()?, bin.coefficient()?.value));
+        let point = |bin: &SpeedBin| Some((bin.speed_by_load()?, bin.coefficient()?));
         (format!("{velocity}/N"), label("friction by load", "1"), bins.iter().filter_map(point).collect())
     } else {
-        let points = bins.iter().map(|bin| (bin.speed, bin.friction.value)).collect();
+        let points = bins.iter().map(|bin| (bin.speed, bin.friction)).collect();
         (velocity.clone(), label("friction", record.force_unit()), points)
     };
     let of_speed = if speed == velocity { "speed" } else { "speed by load" };
+    let what = if record.goes_one_way() { "medians" } else { "half the difference of the directions, medians" };
+    let dots = bins.iter().map(|(speed, friction)| (*speed, friction.value));
+    let medians = Panel::new(label(of_speed, &speed), friction, 260.0).with(
+        Role::Points,
+        format!("{what}, with two standard uncertainties"),
+        dots,
+    );
+    let medians = bins.iter().fold(medians, |panel, (speed, friction)| {
+        let end = |sign: f64| (*speed, friction.value + sign * 2.0 * friction.uncertainty);
+        panel.with(Role::Measured, "", [end(-1.0), end(1.0)])
+    });
     let residuals: Vec<Option<f64>> =
         record.forces().iter().zip(&said).map(|(force, said)| Some((*said)? - force)).collect();
     let left = |abscissae: &[f64]| -> Vec<(f64, f64)> {
@@ -331,11 +352,7 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
     let of_time = !record.is_timeless();
     let motion = of_time.then(|| against(record.positions(), "position", record.position_unit()));
     let panels = vec![
-        Panel::new(label(of_speed, &speed), friction, 260.0).with(
-            Role::Points,
-            "half the difference of the directions, medians",
-            bins,
-        ),
+        medians,
         Panel::new("time / s", label("residual", record.force_unit()), 260.0).with(
             Role::Residual,
             text,

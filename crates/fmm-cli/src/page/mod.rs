@@ -56,13 +56,13 @@ pub(crate) fn row_heading(name: &str) -> String {
 
 /// Texts as a list of bullets, and nothing without any.
 pub(crate) fn bullets(texts: impl IntoIterator<Item = String>) -> String {
-    let items = texts.into_iter().map(|text| format!("<li>{}</li>\n", escaped(&text))).collect::<Vec<_>>().concat();
+    let items = texts.into_iter().map(|text| format!("<li>{}</li>\n", marked(&text))).collect::<Vec<_>>().concat();
     if items.is_empty() { items } else { format!("<ul>\n{items}</ul>\n") }
 }
 
 /// Texts as paragraphs.
 pub(crate) fn paragraphs(texts: impl IntoIterator<Item = String>) -> String {
-    texts.into_iter().map(|text| format!("<p>{}</p>\n", escaped(&text))).collect::<Vec<_>>().concat()
+    texts.into_iter().map(|text| format!("<p>{}</p>\n", marked(&text))).collect::<Vec<_>>().concat()
 }
 
 /// A part of a page under a heading.
@@ -72,7 +72,7 @@ pub(crate) fn section(title: &str, html: &str) -> String {
 
 /// True if the text is a number, perhaps with a sign, a tolerance or a per cent sign, or stands for none.
 fn is_number(text: &str) -> bool {
-    let first = text.split([' ', '±', '%']).next().unwrap_or_default();
+    let first = text.trim_start_matches("< ").split([' ', '±', '%']).next().unwrap_or_default();
     matches!(text, "–" | "") || first.replace('−', "-").parse::<f64>().is_ok()
 }
 

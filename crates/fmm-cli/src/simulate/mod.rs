@@ -4,6 +4,7 @@
 //! gives out its events and energies, or everything.
 
 mod figures;
+mod record;
 
 use std::error::Error;
 use std::fmt::{self, Write as _};
@@ -22,6 +23,8 @@ pub(crate) struct Arguments {
     /// The scenario, a file of JSON
     scenario: PathBuf,
     #[command(flatten)]
+    record: record::Record,
+    #[command(flatten)]
     output: Output,
 }
 
@@ -29,6 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = &arguments.scenario;
     let scenario = Simulation::read(&files::text(path)?).map_err(files::named(path))?;
     let motion = while_busy("simulating", || scenario.run())?.map_err(files::named(path))?;
+    arguments.record.write(&scenario, &motion)?;
     arguments.output.draw("{motion,friction}.svg", || figures::pictures(&scenario, &motion))?;
     if arguments.output.json {
         print(serde_json::to_string(&motion)?)

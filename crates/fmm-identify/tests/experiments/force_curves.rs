@@ -29,7 +29,7 @@ fn friction_over_speed_holds_what_it_states() {
         assert_eq!(bins.len(), 5);
         for (bin, speed) in bins.iter().zip(speeds) {
             assert_eq!((bin.speed, bin.samples), (speed, 8 * pass));
-            for (found, truth) in [(bin.friction, truth(speed)), (bin.offset, 0.7)] {
+            for (found, truth) in [(bin.friction, truth(speed)), (bin.offset.unwrap(), 0.7)] {
                 all += 1;
                 inside += u32::from((found.value - truth).abs() < 1.96 * found.uncertainty);
             }

@@ -5,7 +5,8 @@ use fmm_fit::{effective_count, median_deviation};
 use crate::experiment::force::ForceRecord;
 use fmm_model::Estimated;
 
-/// Friction at about one speed: half the difference between the median forces of the two directions.
+/// Friction at about one speed: half the difference between the median forces of the two directions, or, of a motion that
+/// goes one way, the median force along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedBin {
     /// Median speed (m/s, or by the unit of position).
@@ -13,8 +14,9 @@ pub struct SpeedBin {
     /// Friction, in the unit of the force.
     pub friction: Estimated,
     /// Force that does not change with the direction, half the sum of the two medians, in the same unit: the zero of
-    /// the sensor, gravity, or levels that differ by direction.
-    pub offset: Estimated,
+    /// the sensor, gravity, or levels that differ by direction; `None` of a motion that goes one way, where it is in the
+    /// friction.
+    pub offset: Option<Estimated>,
     /// Median normal load (N); `None` where none was measured.
     pub load: Option<f64>,
     /// Samples in it, of both directions.
@@ -41,7 +43,7 @@ const MEDIAN: f64 = 1.253_314_137_315_500_3;
 
 impl ForceRecord {
     /// Friction in up to `count` bins of speed with as many samples each, slow ones first; without those that only one
-    /// direction passes. Uncertainties take the scatter within a bin for noise, of which neighbouring samples share
+    /// of two directions passes. Uncertainties take the scatter within a bin for noise, of which neighbouring samples share
     /// what their correlation says; a force that is bent within a bin, or differs from pass to pass, is in them.
     ///
     /// ```
@@ -54,7 +56,7 @@ impl ForceRecord {
     /// let record = ForceRecord::of_velocities(&times, &velocities, &forces)?;
     /// for bin in record.friction_over_speed(10) {
     ///     assert!((bin.friction.value - 12.0 - 30.0 * bin.speed).abs() < 0.05);
-    ///     assert!((bin.offset.value - 3.0).abs() < 0.05);
+    ///     assert!((bin.offset.unwrap().value - 3.0).abs() < 0.05);
     /// }
     /// # Ok::<(), fmm_identify::IdentifyError>(())
     /// ```
@@ -107,14 +109,21 @@ impl ForceRecord {
             rows.sort_unstable();
             rows
         });
-        let (forth, back) = (self.median(&forth)?, self.median(&back)?);
-        let uncertainty = 0.5 * forth.uncertainty.hypot(back.uncertainty);
-        let half = |value: f64| Estimated { value: 0.5 * value, uncertainty };
+        let (friction, offset) = match (self.median(&forth), self.median(&back)) {
+            (Some(forth), Some(back)) => {
+                let uncertainty = 0.5 * forth.uncertainty.hypot(back.uncertainty);
+                let half = |value: f64| Estimated { value: 0.5 * value, uncertainty };
+                (half(forth.value - back.value), Some(half(forth.value + back.value)))
+            }
+            (Some(forth), None) if self.goes_one_way() => (forth, None),
+            (None, Some(back)) if self.goes_one_way() => (Estimated { value: -back.value, ..back }, None),
+            _ => return None,
+        };
         let load = |loads: &Vec<f64>| median(&mut rows.iter().map(|row| loads[*row]).collect::<Vec<_>>());
         Some(SpeedBin {
             speed: self.velocities()[rows[rows.len() / 2]].abs(),
-            friction: half(forth.value - back.value),
-            offset: half(forth.value + back.value),
+            friction,
+            offset,
             load: self.loads.as_ref().map(load),
             samples: rows.len(),
         })
