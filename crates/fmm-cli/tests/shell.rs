@@ -112,11 +112,12 @@ fn a_simulated_record_is_identified() {
     std::fs::write(&scenario, machine).unwrap();
     let [scenario, record] = [&scenario, &record].map(|path| path.to_str().unwrap());
     assert!(fmm(&["simulate", scenario, "--record", record, "--noise", "0.002"]).status.success());
-    let identified = ["identify", record, "--channel", "velocity", "--mass", "10", "--normal-load", "10", "--json"];
+    let identified = format!("identify {record} --channel velocity --mass 10 --normal-load 10 --law coulomb --json");
+    let identified: Vec<&str> = identified.split(' ').collect();
     let document: serde_json::Value = serde_json::from_slice(&fmm(&identified).stdout).unwrap();
     let mu = &document["models"][0]["parameters"]["mu"];
     assert!((mu["value"].as_f64().unwrap() - 0.1).abs() < 0.002, "{mu}");
-    let refused = fmm(&["simulate", scenario, "--record", record, "--noise", "-1"]);
+    let refused = fmm(&["simulate", scenario, "--record", record, "--noise=-1"]);
     assert!(String::from_utf8(refused.stderr).unwrap().contains("give a share of the largest value"));
 }
 
