@@ -227,8 +227,20 @@ impl Finding {
         })
     }
 
-    /// Value, uncertainty and unit as text.
+    /// True for a quantity that cannot be negative, of which not even the order of magnitude is known.
+    fn is_lost(&self) -> bool {
+        /// Uncertainties of more than so many values leave nothing of them (1). Origin: chosen; the digits of a value
+        /// that small are those of its noise.
+        const MOST: f64 = 10.0;
+        let is_positive = self.parameter.bounds().lower() >= 0.0;
+        is_positive && self.uncertainty().is_some_and(|uncertainty| uncertainty > MOST * self.value)
+    }
+
+    /// Value, uncertainty and unit as text; of a value that is lost below its uncertainty, that it is not determined.
     pub(crate) fn quantity(&self) -> String {
+        if self.is_lost() || self.origin == Origin::Fitted(EstimateStatus::Undetermined) {
+            return "not determined".to_owned();
+        }
         let value = Rounded::new(self.value, self.uncertainty());
         match self.parameter.unit() {
             "1" => value.to_string(),
@@ -275,7 +287,8 @@ impl Finding {
     /// Reservation against taking it for a measured value.
     pub(crate) fn reservation(&self) -> Option<&'static str> {
         match self.origin() {
-            Origin::Fitted(EstimateStatus::Undetermined) => Some("not determined"),
+            Origin::Fitted(EstimateStatus::Undetermined) => Some("the record does not tell it from others"),
+            _ if self.is_lost() => Some("its uncertainty is many times its value"),
             Origin::Fitted(EstimateStatus::Fixed) => Some("held"),
             Origin::Fitted(status) if status.is_at_bound() => Some("at its bound"),
             _ => None,
@@ -292,6 +305,17 @@ mod tests {
     fn finding(value: f64, u: Option<f64>, bounds: Bounds, origin: Origin) -> Finding {
         let parts = u.map(|u| vec![(Source::Residuals, u * u)]);
         Finding::new(Parameter::new("level", "F", "N").bounded(bounds), value, parts, 50.0, origin, false)
+    }
+
+    #[test]
+    fn what_is_lost_below_its_uncertainty_is_not_written_as_a_number() {
+        let fitted = Origin::Fitted(EstimateStatus::Determined);
+        let text = |value: f64, bounds: Bounds| finding(value, Some(2900.0), bounds, fitted).to_string();
+        let lost = text(12.0, Bounds::NOT_NEGATIVE);
+        assert!(lost.starts_with("not determined  [0, ") && lost.contains("many times its value"), "{lost}");
+        assert!(text(1200.0, Bounds::NOT_NEGATIVE).contains("1200 ± 2900"));
+        // A quantity of either sign is that close to zero.
+        assert!(text(12.0, Bounds::UNBOUNDED).contains(" ± 2900"));
     }
 
     /// An interval has a width and holds its value; without one a finding says why.

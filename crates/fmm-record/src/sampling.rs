@@ -3,6 +3,7 @@
 use fmm_model::Rounded;
 
 use crate::error::RecordError;
+use crate::numerics::mean;
 
 /// Largest distance of a time stamp from the uniform grid, over the interval (1).
 const JITTER: f64 = 0.01;
@@ -55,10 +56,10 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     let is_odd = |step: f64| (step - usual).abs() > (0.5 * worst).max(tolerance);
     let repeated = steps.iter().filter(|step| **step == 0.0).count();
     if usual <= worst && steps.iter().all(|step| *step >= 0.0) && 2 * repeated > steps.len() && steps.len() > 9 {
-        let [rate, worst] = [steps.len() as f64 / steps.iter().sum::<f64>(), worst].map(in_six_digits);
+        let [rate, worst] = [slope(times).recip(), worst].map(in_six_digits);
         let what = format!(
             "time stamps repeat, {repeated} of {}: they are rounded to {worst} s, more than an interval; \
-             their span says about \
+             a line through them says about \
              {rate} Hz; give the rate",
             times.len()
         );
@@ -106,6 +107,15 @@ pub(crate) fn is_clock(times: &[f64]) -> bool {
     times.iter().all(|time| time.is_finite())
         && times.windows(2).all(|pair| pair[0] <= pair[1])
         && repeated as f64 <= REPEATED * times.len() as f64
+}
+
+/// Slope of the line through `times` (s) of equally spaced samples by least squares: their interval (s), of which
+/// rounding changes less than of their span.
+fn slope(times: &[f64]) -> f64 {
+    let (middle, center) = (0.5 * (times.len() - 1) as f64, mean(times));
+    let sums = times.iter().enumerate().map(|(index, time)| (index as f64 - middle, time - center));
+    let (product, square) = sums.fold((0.0, 0.0), |(product, square), (i, t)| (product + i * t, square + i * i));
+    product / square
 }
 
 /// A time stamp (s) off a uniform grid, which would have it at `expected` (s).

@@ -105,7 +105,7 @@ pub struct RecordSummary {
     pub clock_uncertainty: f64,
     /// When the motion was released (s), if the record begins at rest or in a slow motion.
     pub release: Option<f64>,
-    /// Half swings that stand out of the noise.
+    /// Half swings that stand out of the noise, by their peaks; the first one may be where the record begins.
     pub half_swings: usize,
     /// First and last amplitude, in the unit of the record.
     pub amplitudes: (f64, f64),
@@ -202,10 +202,7 @@ impl fmt::Display for RecordSummary {
             Some(value) => write!(f, "; offset held at {value:.6} {unit}")?,
         }
         let (first, last) = (digits(self.amplitudes.0, 4), digits(self.amplitudes.1, 4));
-        write!(
-            f,
-            "; {half_swings} half swings above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}"
-        )?;
+        write!(f, "; {half_swings} peaks above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}")?;
         write!(f, "; noise {} {unit}", digits(*noise, 2))?;
         if let Some(step) = self.resolution {
             write!(f, ", resolution {} {unit}", digits(step, 3))?;

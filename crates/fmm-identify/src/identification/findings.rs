@@ -1,10 +1,11 @@
 //! Findings of a fit: its estimates, and what follows from them and the known inputs of the machine.
 
-use fmm_fit::Fit;
+use fmm_fit::{EstimateStatus, Fit};
 
 use crate::experiment::clock::Clock;
 use crate::finding::{Finding, Origin, Source};
 use crate::identification::force::MotionNoise;
+use crate::identification::limits::inseparable;
 use crate::machine::Machine;
 use crate::quantities::derived::{Derived, Inputs, KNOWN};
 use crate::quantities::table::Table;
@@ -28,6 +29,7 @@ pub(crate) fn findings(
         .map(|index| clock.uncertainty * table.power_of_clock(index, fit.values(), clock.order) * fit.values()[index])
         .collect();
     let mut findings = Vec::new();
+    let inseparable = inseparable(fit);
     for (index, estimate) in fit.estimates().iter().enumerate() {
         // What is proportional to a power of the record is uncertain with its gain.
         let gain = gain_uncertainty * table.power_of_gain(index, fit.values()) * estimate.value();
@@ -37,7 +39,9 @@ pub(crate) fn findings(
         let known = [(Source::Gain, gain), (Source::Clock, by_clock[index]), (Source::Motion, by_motion)];
         let parts = variances(covariance, &gradient, &known, false);
         let relaxed = Some(estimate).filter(|estimate| estimate.status().is_at_bound()).and(covariance.relaxed(index));
-        let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(estimate.status()));
+        let is_lost = inseparable.contains(&index);
+        let (parts, status) = if is_lost { (None, EstimateStatus::Undetermined) } else { (parts, estimate.status()) };
+        let (parameter, origin) = (estimate.parameter().clone(), Origin::Fitted(status));
         let freedom = covariance.degrees_of_freedom(index);
         let finding = Finding::new(parameter, estimate.value(), parts, freedom, origin, index >= table.shared);
         findings.push(finding.at_bound(relaxed.map(f64::sqrt), freedom));

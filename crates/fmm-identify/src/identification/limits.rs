@@ -91,12 +91,7 @@ impl Warning {
 
     /// Parameters that a rank does not show to be inseparable, as errors of an integrated motion tell them apart.
     fn of_correlations(fit: &Fit) -> Option<Self> {
-        /// Correlation from which on two parameters are one.
-        const ONE: f64 = 1.0 - 1e-9;
-        let count = fit.estimates().len();
-        let as_one = |i: usize, j: usize| i != j && fit.correlation(i, j).is_some_and(|r| r.abs() > ONE);
-        let together = (0..count).filter(|i| (0..count).any(|j| as_one(*i, j)));
-        let names: Vec<&str> = together.map(|i| fit.estimates()[i].name()).collect();
+        let names: Vec<&str> = inseparable(fit).into_iter().map(|i| fit.estimates()[i].name()).collect();
         (!names.is_empty()).then(|| Self::Inseparable {
             sentence: format!(
                 "{} change together without an effect on this record, with correlations of ±1: hold one of them",
@@ -147,4 +142,13 @@ impl Warning {
         warnings.extend(structure.coloured_noise(identification.covariance.inflation));
         warnings
     }
+}
+
+/// Parameters of a fit that are one with another, as their correlation shows: neither is determined.
+pub(crate) fn inseparable(fit: &Fit) -> Vec<usize> {
+    /// Correlation from which on two parameters are one.
+    const ONE: f64 = 1.0 - 1e-9;
+    let count = fit.estimates().len();
+    let as_one = |i: usize, j: usize| i != j && fit.correlation(i, j).is_some_and(|r| r.abs() > ONE);
+    (0..count).filter(|i| (0..count).any(|j| as_one(*i, j))).collect()
 }

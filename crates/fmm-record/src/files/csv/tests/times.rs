@@ -189,7 +189,9 @@ fn a_gap_is_named_with_both_ends_and_the_record_beside_it_is_read() {
     let row = |i: u32| format!("{:.2},{i}\n", f64::from(i) * 1e-3);
     let rounded = message(&format!("t [s],v\n{}", (0..1001).map(row).collect::<String>()));
     assert!(
-        rounded.contains("rounded to 0.01 s, more than an interval; their span says about 1000 Hz; give the rate"),
+        rounded.contains(
+            "rounded to 0.01 s, more than an interval; a line through them says about 1000 Hz; give the rate"
+        ),
         "{rounded}"
     );
 }
