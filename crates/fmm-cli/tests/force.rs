@@ -250,6 +250,36 @@ fn a_force_of_the_other_sign_is_named_and_turned() {
     assert!(!said["models"][0]["warnings"].to_string().contains("drives"), "{said}");
 }
 
+/// Units that nothing states are said as they were taken, and so are samples that are cut off or jump, and a record to
+/// predict with a force of the other sign.
+#[test]
+fn what_was_taken_for_granted_is_said() {
+    let [t, x, v, f] = rubbed();
+    let path =
+        table_of("bare.csv", &[("time", &by(1e3, &t)), ("Position", &by(1e3, &x)), ("Friction", &f), ("Load", &t)]);
+    let (_, said) = fmm(&path, &["--model", "coulomb + linear"]);
+    assert!(said.contains("no unit is stated, and s for \"time\", m for \"Position\", N for \"Friction\""), "{said}");
+    assert!(said.contains("\"Load\" was not used; if it is the normal load, say so by --load"), "{said}");
+    let units = ["--time-unit", "ms", "--position-unit", "mm", "--force-unit", "N", "--model", "coulomb + linear"];
+    let (_, said) = fmm(&path, &units);
+    assert!(!said.contains("no unit is stated") && said.contains("friction over speed, no law assumed:"), "{said}");
+    let named = table_of("milli.csv", &[("time [ms]", &by(1e3, &t)), ("x [m]", &x), ("F [N]", &f)]);
+    refused(&named, &["--time-unit", "ms"], &["\"time [ms]\" tells the unit; leave --time-unit out"]);
+    let cut: Vec<f64> = v.iter().map(|v| (100.0 * v).clamp(-4.0, 4.0)).collect();
+    let mut jumps = x.clone();
+    jumps[700] = 1.0;
+    let path = table_of("cut.csv", &[("t [s]", &t), ("x [m]", &jumps), ("F [N]", &cut)]);
+    let (_, said) = fmm(&path, &["--model", "coulomb + linear"]);
+    assert!(said.contains("\"F [N]\" lies on -4 and 4 in") && said.contains("first at 2.8 s"), "{said}");
+    let [good, reaction] = [1.0, -1.0]
+        .map(|sign| table_of(&format!("sign{sign}.csv"), &[("t [s]", &t), ("x [m]", &x), ("F [N]", &by(sign, &f))]));
+    let (_, said) = fmm(&good, &["--model", "coulomb + linear", "--validate", reaction.to_str().unwrap()]);
+    assert!(
+        said.contains("note: ") && said.contains("sign-1.csv: the force drives the motion: turn its sign"),
+        "{said}"
+    );
+}
+
 /// A prediction that is off by more than the force is named, and the law that predicts better is preferred.
 #[test]
 fn what_was_not_fitted_ranks_the_laws() {

@@ -184,11 +184,28 @@ impl Columns {
         all.into_iter().filter_map(|(what, name)| Some((what, name.as_ref()?))).chain(channels)
     }
 
+    /// Says which units nothing states: of each column whether it is stated, its name, the unit taken, and the option.
+    pub(super) fn note_units(&mut self, columns: [Option<(bool, String, String, &str)>; 4]) {
+        let silent: Vec<_> = columns.into_iter().flatten().filter(|(is_stated, ..)| !is_stated).collect();
+        if silent.is_empty() {
+            return;
+        }
+        let taken: Vec<String> = silent.iter().map(|(_, name, unit, _)| format!("{unit} for \"{name}\"")).collect();
+        let mut options: Vec<&str> = silent.iter().map(|(.., option)| *option).collect();
+        options.dedup();
+        self.remarks.push(format!(
+            "no unit is stated, and {} were taken; say others by {}, or in the names of the columns",
+            taken.join(", "),
+            options.join(", ")
+        ));
+    }
+
     /// Finds which of the columns with these labels were not used.
     pub(super) fn leave(&mut self, labels: &[Label]) {
         let is_used = |label: &&Label| self.used().any(|(_, name)| name == label.name());
         let unused: Vec<&Label> = labels.iter().filter(|label| !is_used(label)).collect();
-        let load = unused.iter().find(|label| self.load.is_none() && names_normal_load(label));
+        let is_load = |label: &Label| names_normal_load(label) || has(&label.name().to_lowercase(), &["load"]);
+        let load = unused.iter().find(|label| self.load.is_none() && is_load(label));
         let remark = load.map(|load| {
             format!(
                 "\"{}\" was not used; if it is the normal load, say so by --load, and levels are coefficients",

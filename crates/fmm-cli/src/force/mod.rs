@@ -19,7 +19,7 @@ use clap::Args;
 use columns::Columns;
 use fmm_identify::{
     Candidate, Comparison, ForceLoop, ForceRecord, Identification, IdentifyError, Inquiry, Machine, Onset, SpeedBin,
-    Validation,
+    Validation, Warning,
 };
 use fmm_model::Rounded;
 use serde_json::{Value, json};
@@ -92,9 +92,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let validations = |number: usize| compared.validations().get(number).map_or(&[][..], Vec::as_slice);
     let all_files = || arguments.files.iter().chain(&arguments.validate);
     let all_columns = || columns.iter().chain(&columns_of_others);
+    let driven = arguments.validate.iter().zip(&others).filter_map(|(file, record)| {
+        let (friction, unit) = (record.driving_friction()?, record.force_unit().to_owned());
+        Some(named(file)(Warning::DrivesMotion { friction, unit }))
+    });
     let remarks: Vec<String> = all_files()
         .zip(all_columns())
         .flat_map(|(file, columns)| columns.remarks.iter().map(|remark| named(file)(remark)))
+        .chain(driven)
         .collect();
     if arguments.output.json {
         let models = found.iter().zip(0..).map(|(found, i)| document(found, &arguments.validate, validations(i)));

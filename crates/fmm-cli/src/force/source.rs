@@ -5,7 +5,8 @@ use std::path::Path;
 
 use clap::Args;
 use fmm_identify::ForceRecord;
-use fmm_record::{Column, DataFile, Label, Reader, RecordError, WrittenUnit};
+use fmm_model::Rounded;
+use fmm_record::{Column, DataFile, Examination, Label, Quantity, Reader, Record, RecordError, WrittenUnit};
 
 use crate::files::{self, named};
 use crate::force::columns::{Columns, FORCE, LOAD, POSITION, Role, VELOCITY};
@@ -17,6 +18,9 @@ pub(crate) struct Source {
     /// The column of times (s), by name or number; found by its name unless given
     #[arg(long, value_name = "NAME|INDEX")]
     time: Option<String>,
+    /// Unit of the times, such as ms, if the name of their column does not tell it; s unless given
+    #[arg(long, value_name = "UNIT", conflicts_with = "rate")]
+    time_unit: Option<String>,
     /// The sampling rate, if there is no column of times
     #[arg(long, value_name = "HZ", conflicts_with = "time")]
     rate: Option<f64>,
@@ -77,6 +81,34 @@ impl Series {
     fn or_by(&self, factor: f64) -> Vec<f64> {
         let factor = if self.unit.is_some() { 1.0 } else { factor };
         self.values.iter().map(|value| factor * value).collect()
+    }
+}
+
+impl Series {
+    /// Sentences about samples at the `times` that do not belong to what was measured.
+    fn doubts(&self, times: &[f64]) -> Vec<String> {
+        let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
+        let interval = (last - first) / times.len().saturating_sub(1).max(1) as f64;
+        let record = Record::new(*first, interval, self.values.clone(), Quantity::Displacement, "m");
+        let Ok(record) = record else { return Vec::new() };
+        let (examination, name) = (Examination::of(&record), &self.name);
+        let saturation = examination.saturation().map(|found| {
+            let levels: Vec<String> = [found.lower, found.upper].into_iter().flatten().map(|at| at.to_string()).collect();
+            format!(
+                "\"{name}\" lies on {} in {} samples: if the range of the instrument ends there, what is beyond is lost",
+                levels.join(" and "),
+                found.samples
+            )
+        });
+        let spike = examination.spikes().first().map(|spike| {
+            let count: usize = examination.spikes().iter().map(|spike| spike.count).sum();
+            let at = Rounded::new(times.get(spike.index).copied().unwrap_or(spike.time), None);
+            format!(
+                "\"{name}\" jumps to and fro in {count} samples, first at {at} s, and these are used as they are: mend them, \
+                 or leave them out by --from and --to"
+            )
+        });
+        saturation.into_iter().chain(spike).collect()
     }
 }
 
@@ -163,6 +195,20 @@ impl Source {
         }
         let name = |column: &Column| Some(file.channel(column.clone()).ok()?.channel);
         columns.time = time.as_ref().and_then(name);
+        let said_of =
+            |series: &Option<Series>| series.as_ref().map(|series| (series.name.clone(), series.unit.is_some()));
+        columns.note_units([
+            columns
+                .time
+                .clone()
+                .map(|time| (states_unit(&time) || self.time_unit.is_some(), time, "s".to_owned(), "--time-unit")),
+            said_of(&positions).map(|(name, said)| (said, name, unit.clone(), "--position-unit")),
+            said_of(&velocities).map(|(name, said)| (said, name, format!("{unit}/s"), "--position-unit")),
+            Some((forces.unit.is_some(), forces.name.clone(), "N".to_owned(), "--force-unit")),
+        ]);
+        for series in positions.iter().chain(&velocities).chain([&forces]) {
+            columns.remarks.extend(series.doubts(&times));
+        }
         columns.position = positions.map(|series| series.name);
         columns.velocity = velocities.map(|series| series.name);
         if let Some(load) = &self.load {
@@ -203,7 +249,15 @@ impl Source {
         let file = files::open(reader, path)?;
         let times = match (time, self.rate) {
             (Some(time), _) => {
-                let read = file.channel(time.clone()).map_err(|error| at_its_time(time, error, &[]))?;
+                let mut read = file.channel(time.clone()).map_err(|error| at_its_time(time, error, &[]))?;
+                if let Some(unit) = &self.time_unit {
+                    if states_unit(&read.channel) {
+                        return Err(
+                            format!("the name \"{}\" tells the unit; leave --time-unit out", read.channel).into()
+                        );
+                    }
+                    read.channel = format!("time [{unit}]");
+                }
                 read.seconds()?
             }
             (None, Some(rate)) => {
@@ -258,6 +312,11 @@ fn position_unit(
         (Some(unit), ..) => Ok(unit.si().to_owned()),
         (None, _, base) => Ok(base.unwrap_or_else(|| "m".to_owned())),
     }
+}
+
+/// True if the name of a column of times has a unit behind it.
+fn states_unit(name: &str) -> bool {
+    name.contains(['[', '(', '/', '_'])
 }
 
 /// A column whose `unit` follows from its label.

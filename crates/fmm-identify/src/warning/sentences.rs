@@ -137,9 +137,9 @@ impl Warning {
             }
             Self::NoisyMotion { quantity, share, samples, parameters } => write!(
                 f,
-                "the measured {quantity} has noise of {} % of its deviation, which was averaged over {samples} samples; \
+                "the measured {quantity} has noise of {} of its deviation, which was averaged over {samples} samples; \
                  what is left of it, and what averaging takes from the motion, is most of the uncertainty of {parameters}",
-                to_three_digits(100.0 * share)
+                if *share < 1e-4 { format!("{share:.0e}") } else { format!("{} %", to_three_digits(100.0 * share)) }
             ),
             Self::CoarseMotion { parameters } => write!(
                 f,
