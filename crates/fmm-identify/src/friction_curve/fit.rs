@@ -55,6 +55,8 @@ pub(super) struct Levelled<'a> {
     pub(super) scale: f64,
     /// The fit by Coulomb and viscous friction, with the same terms beside it.
     pub(super) line: Vec<f64>,
+    /// Sum of squares of that fit.
+    pub(super) line_squares: f64,
 }
 
 impl<'a> Levelled<'a> {
@@ -86,7 +88,7 @@ impl<'a> Levelled<'a> {
         values.extend(KNOTS.map(|s| level + slope * s * top));
         values.push(top);
         values.extend_from_slice(&line.values()[shared..]);
-        Ok(Self { problem, values, top, scale, line: line.values().to_vec() })
+        Ok(Self { problem, values, top, scale, line: line.values().to_vec(), line_squares: line.sum_of_squares() })
     }
 }
 

@@ -85,11 +85,6 @@ impl Linearised {
         dot(&self.residuals, &self.residuals)
     }
 
-    /// Sum of squares of the residuals of the records at the best curve of all.
-    pub(super) fn unexplained(&self) -> f64 {
-        dot(&self.left, &self.left)
-    }
-
     /// Sum of squares after `step`, if residuals were linear.
     pub(super) fn predicted(&self, step: &[f64]) -> f64 {
         let mut residuals = self.residuals.clone();

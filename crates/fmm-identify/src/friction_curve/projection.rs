@@ -45,6 +45,8 @@ pub(crate) struct ShownFriction {
     best: DVector<f64>,
     /// Fit by Coulomb and viscous friction, with the same terms.
     line: Vec<f64>,
+    /// Least sum of squares that a curve was seen to leave, with these terms.
+    squares: f64,
 }
 
 /// A law on the friction that records show.
@@ -69,12 +71,11 @@ impl ShownFriction {
         experiments: &[Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        let Levelled { problem, values, top, scale, line, .. } = Levelled::of(machine, &terms, experiments, end)?;
-        let thinned = problem.thinned();
-        let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
-        let seen = few.as_ref().unwrap_or(&problem);
-        let settled = Settled::of(seen, values, scale, MOST_STEPS_OF_PROJECTION, end)?;
-        let is_structured = settled.near.excess(seen).is_some();
+        let Levelled { problem, values, top, scale, line, line_squares } =
+            Levelled::of(machine, &terms, experiments, end)?;
+        let settled = Settled::of(&problem, values, scale, MOST_STEPS_OF_PROJECTION, end)?;
+        let squares = line_squares.min(settled.near.sum_of_squares());
+        let is_structured = settled.near.excess(&problem).is_some();
         let eigen = settled.likelihood.precision.clone().symmetric_eigen();
         let least = LOST * eigen.eigenvalues.max();
         let roots = eigen.eigenvalues.map(|value| if value > least { value.sqrt() } else { 0.0 });
@@ -83,7 +84,7 @@ impl ShownFriction {
         let root = DMatrix::from_diagonal(&roots) * eigen.eigenvectors.transpose();
         let names = problem.parameters().iter().map(|parameter| parameter.name().to_owned()).collect();
         let (first, beside) = (problem.table.law, problem.table.oscillator..problem.table.law);
-        Ok(Self { terms, is_structured, top, names, beside, first, settled, root, best, line })
+        Ok(Self { terms, is_structured, top, names, beside, first, settled, root, best, line, squares })
     }
 
     /// The same with what else acts: the terms that explain most of the residuals, again and again as long as these are
@@ -91,33 +92,40 @@ impl ShownFriction {
     pub(crate) fn beside(&self, machine: &Machine, experiments: &[Experiment], end: Option<Instant>) -> Option<Self> {
         const FURTHER: [&[Term]; 3] =
             [&[Term::CubicSpring], &[Term::CubicSpring, Term::QuinticSpring], &[Term::Change]];
-        let mut found: Option<Self> = None;
+        let mut tried: Vec<Self> = Vec::new();
+        let mut found: Option<usize> = None;
         loop {
-            let shown = found.as_ref().unwrap_or(self);
+            let shown = found.map_or(self, |place| &tried[place]);
             let is_free = |term: &&Term| !term.is_spring() || machine.restoring() == Restoring::Linear;
             let further =
                 FURTHER.map(|terms| terms.iter().filter(is_free).copied().fold(shown.terms.clone(), Terms::with));
             let further = further.into_iter().filter(|terms| shown.is_structured && *terms != shown.terms);
-            let further = on_all_threads(further.collect(), |terms| Self::of(machine, terms, experiments, end).ok());
-            let worth = |further: &Self| {
-                let added = further.terms.iter().count() - shown.terms.iter().count();
-                further.gain(shown) - EXPLAINED * added as f64
+            let further: Vec<Terms> = further.collect();
+            let is_new = |terms: &&Terms| tried.iter().all(|one| one.terms != **terms);
+            let new = further.iter().filter(is_new).cloned().collect();
+            let new = on_all_threads(new, |terms| Self::of(machine, terms, experiments, end).ok());
+            tried.extend(new.into_iter().flatten());
+            let shown = found.map_or(self, |place| &tried[place]);
+            let worth = |place: &usize| {
+                let added = tried[*place].terms.iter().count() - shown.terms.iter().count();
+                tried[*place].gain(shown) - EXPLAINED * added as f64
             };
             // A change follows much that is none: it counts if nothing is left to explain.
-            let is_idle = |further: &Self| further.terms.has(Term::Change) && further.is_structured;
-            let further = further.into_iter().flatten().filter(|further| !is_idle(further) && worth(further) > 0.0);
-            match further.max_by(|a, b| worth(a).total_cmp(&worth(b))) {
+            let is_idle = |one: &Self| one.terms.has(Term::Change) && one.is_structured;
+            let counts = |place: &usize| further.contains(&tried[*place].terms) && !is_idle(&tried[*place]);
+            let best = (0..tried.len()).filter(counts).filter(|place| worth(place) > 0.0);
+            match best.max_by(|a, b| worth(a).total_cmp(&worth(b))) {
                 Some(best) => found = Some(best),
-                None => return found,
+                None => return found.map(|place| tried.swap_remove(place)),
             }
         }
     }
 
-    /// Fall of −2 ln L beside `other`, for as many residuals as are independent (1).
+    /// Fall of −2 ln L beside `other`, for as many residuals as are independent (1). A curve that has not settled may
+    /// promise more than it keeps: what counts is the sum of squares that it was seen to leave.
     fn gain(&self, other: &Self) -> f64 {
-        let left = |one: &Self| one.settled.near.unexplained();
         let independent = self.settled.near.residuals().len() as f64 / self.settled.near.correlation().max(1.0);
-        independent * (left(other) / left(self)).ln()
+        independent * (other.squares / self.squares).ln()
     }
 
     /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction

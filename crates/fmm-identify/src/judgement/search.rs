@@ -26,6 +26,7 @@ use crate::judgement::trials::{CORNERS, Trial, beside_line};
 use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
+use crate::problem::parts::thinned;
 use crate::problem::starts::Fitted;
 use crate::threads::{is_past, on_all_threads};
 use crate::warning::Warning;
@@ -303,7 +304,9 @@ impl Run<'_, '_> {
         let (of_speed, of_state) = (self.limited(MOST_ITERATIONS), self.limited(MOST_ITERATIONS_WITH_STATE));
         // A contact that yields is a spring that softens: it may be what another spring explains as well.
         let preslides_alone = self.shows_presliding(tests);
-        let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, self.decays, self.end).ok();
+        let few = thinned(self.decays);
+        let few = few.as_deref().unwrap_or(self.decays);
+        let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, few, self.end).ok();
         // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
         // comparison.
         let is_filtered = |found: &Found| {
@@ -311,7 +314,7 @@ impl Run<'_, '_> {
             behind.is_some_and(|(found, _)| !found.structure.is_correlated())
         };
         let structured = plain.as_ref().filter(|plain| plain.is_structured && !is_filtered(found));
-        let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, self.decays, self.end));
+        let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, few, self.end));
         let shown = further.as_ref().or(plain.as_ref());
         let beside = shown.map_or(Terms::NONE, |shown| shown.terms.clone());
         let of_speed = Run { options: &of_speed, beside: &beside, ..*self };

@@ -22,7 +22,7 @@ use crate::quantities::table::{Place, Table};
 mod declared;
 pub(crate) mod force;
 mod motion;
-mod parts;
+pub(crate) mod parts;
 mod residuals;
 pub(crate) mod starts;
 pub(crate) mod tangent;

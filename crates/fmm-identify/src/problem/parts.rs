@@ -17,6 +17,18 @@ use crate::experiment::reference;
 const ENOUGH_SAMPLES: usize = 3000;
 const SAMPLES_PER_SWING: f64 = 24.0;
 
+/// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing;
+/// `None` if they have no more.
+pub(crate) fn thinned(experiments: &[Experiment]) -> Option<Vec<Experiment>> {
+    let stride = |decay: &Experiment| {
+        let swings = decay.record().duration() * decay.guess.frequency();
+        let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
+        decay.record().len() / enough
+    };
+    let stride = experiments.iter().map(stride).min().filter(|stride| *stride > 1)?;
+    experiments.iter().map(|decay| decay.thinned(stride)).collect()
+}
+
 impl Problem<'_> {
     /// The ring-downs up to a `share` of their duration (1), for a fit in which a small error of the period does not
     /// yet add up.
@@ -24,16 +36,9 @@ impl Problem<'_> {
         self.experiments.iter().map(|experiment| experiment.beginning(share)).collect()
     }
 
-    /// The ring-downs with so few of their samples that a search among many starts is quick and yet sees every swing;
-    /// `None` if they have no more.
+    /// The ring-downs with [few of their samples](thinned).
     pub(crate) fn thinned(&self) -> Option<Vec<Experiment>> {
-        let stride = |decay: &Experiment| {
-            let swings = decay.record().duration() * decay.guess.frequency();
-            let enough = ENOUGH_SAMPLES.max((SAMPLES_PER_SWING * swings) as usize);
-            decay.record().len() / enough
-        };
-        let stride = self.experiments.iter().map(stride).min().filter(|stride| *stride > 1)?;
-        self.experiments.iter().map(|decay| decay.thinned(stride)).collect()
+        thinned(&self.experiments)
     }
 
     /// The ring-downs up to their last peaks, if they are displacements and that leaves something out.
