@@ -7,8 +7,6 @@ use fmm_frf::{Channel, FrfError};
 use fmm_model::{Bounds, Parameter, Rounded};
 use fmm_record::{Quantity, RecordError};
 
-use crate::experiment::digits;
-
 /// Why a record could not be prepared or identified; each variant is something else that the caller can do about it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -188,7 +186,7 @@ impl IdentifyError {
     /// A record without samples between two times (s), over more `periods` than can be bridged.
     pub(crate) fn long_gap([before, after]: [f64; 2], periods: f64) -> Self {
         let [before, after, periods] =
-            [(before, 6), (after, 6), (periods, 2)].map(|(value, count)| digits(value, count));
+            [(before, 6), (after, 6), (periods, 2)].map(|(value, count)| Rounded::significant(value, count));
         Self::not_seen(format!(
             "the record has no samples between {before} s and {after} s, {periods} periods of its motion, of which the \
              swings are not seen; use it up to {before} s or from {after} s on"

@@ -121,6 +121,17 @@ impl Rounded {
         }
     }
 
+    /// `value` to so many significant digits, of which there is at least one.
+    ///
+    /// ```
+    /// use fmm_model::Rounded;
+    ///
+    /// assert_eq!(Rounded::significant(0.012_345, 2), "0.012");
+    /// ```
+    pub fn significant(value: f64, digits: usize) -> String {
+        Self::every_digit(format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value))
+    }
+
     /// The ends of an interval, in the same unit, as text in brackets, to the same decimal place as the value.
     ///
     /// ```

@@ -137,7 +137,7 @@ fn more(measure: &Quantity) -> String {
     let own = (u * u - shared_u * shared_u).max(0.0);
     let with = |further: usize| (own * *records as f64 / (records + further) as f64 + shared_u * shared_u).sqrt();
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-    let text = |u: f64| format!("{}{unit}", Rounded::every_digit(format!("{u:.1e}").parse().unwrap_or(u)));
+    let text = |u: f64| format!("{}{unit}", Rounded::significant(u, 2));
     format!(
         "the consensus of {name} has u = {} by {records} records; {TESTS} more that scatter as these do make it {}, as many again {}; \
          what they share keeps it above {}",

@@ -30,7 +30,6 @@ use fmm_sim::{Sampling, SimulationError};
 pub use drive::Drive;
 pub(crate) use driven::DrivenGuess;
 pub use impact_trial::{ImpactSummary, ImpactTrial};
-pub(crate) use preparation::digits;
 pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
 pub use sensor::Sensor;

@@ -183,12 +183,6 @@ impl RecordSummary {
     }
 }
 
-/// `value` to so many significant digits.
-pub(crate) fn digits(value: f64, count: usize) -> String {
-    let rounded = format!("{value:.*e}", count.saturating_sub(1)).parse().unwrap_or(value);
-    Rounded::every_digit(rounded)
-}
-
 impl fmt::Display for RecordSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { from, to, samples, rate, quantity, unit, half_swings, frequency, noise, .. } = self;
@@ -201,11 +195,11 @@ impl fmt::Display for RecordSummary {
             None => write!(f, "; offset fitted")?,
             Some(value) => write!(f, "; offset held at {value:.6} {unit}")?,
         }
-        let (first, last) = (digits(self.amplitudes.0, 4), digits(self.amplitudes.1, 4));
+        let (first, last) = (Rounded::significant(self.amplitudes.0, 4), Rounded::significant(self.amplitudes.1, 4));
         write!(f, "; {half_swings} peaks above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}")?;
-        write!(f, "; noise {} {unit}", digits(*noise, 2))?;
+        write!(f, "; noise {} {unit}", Rounded::significant(*noise, 2))?;
         if let Some(step) = self.resolution {
-            write!(f, ", resolution {} {unit}", digits(step, 3))?;
+            write!(f, ", resolution {} {unit}", Rounded::significant(step, 3))?;
         }
         Ok(())
     }

@@ -5,9 +5,9 @@ mod serialised;
 
 use std::fmt;
 
+use fmm_model::Rounded;
 use fmm_uq::Contribution;
 
-use crate::experiment::digits;
 use crate::finding::{Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
@@ -157,7 +157,11 @@ impl fmt::Display for FrictionBound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { law, name, unit, upper_95 } = self;
         let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-        write!(f, "no dry friction is seen: {law} allows a {name} of {}{unit} at most (95 %)", digits(*upper_95, 3))
+        write!(
+            f,
+            "no dry friction is seen: {law} allows a {name} of {}{unit} at most (95 %)",
+            Rounded::significant(*upper_95, 3)
+        )
     }
 }
 
