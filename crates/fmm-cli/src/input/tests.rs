@@ -159,19 +159,24 @@ fn universal_files_state_quantity_and_unit() {
 fn what_is_missing_outside_of_the_span_does_not_matter() {
     let path = file("gap.csv");
     std::fs::write(&path, "t [s],v [m/s]\n0,NaN\n1,1\n2,2\n3,3\n").unwrap();
-    let refused = refusal(&Choice::default(), &path);
-    assert!(refused.contains("1 of 4 samples is not finite"), "{refused}");
-    let cut = read(&Choice { from: Some(1.0), to: Some(2.0), ..Choice::default() }, &path);
+    let whole = Choice::default().read(&path).unwrap();
+    assert_eq!(whole.record.values(), [1.0, 2.0, 3.0]);
+    let said = "1 of 4 rows have no number in the channel and were left out";
+    assert!(whole.warnings.iter().any(|warning| warning.contains(said)), "{:?}", whole.warnings);
+    let cut = Choice { from: Some(1.0), to: Some(2.0), ..Choice::default() }.read(&path).unwrap();
     assert_eq!((cut.record.start(), cut.record.values()), (1.0, &[1.0, 2.0][..]));
 }
 
 #[test]
-fn a_wrong_time_names_the_options() {
+fn uneven_times_are_taken_unless_a_rate_is_given() {
     let path = file("uneven.csv");
     std::fs::write(&path, "t [s],v [m/s]\n0,0\n1,1\n3,2\n4,3\n5,4\n").unwrap();
-    let refused = refusal(&Choice::default(), &path);
-    assert!(refused.contains("time stamp 2 is 3 s") && refused.contains("the rate is --rate"), "{refused}");
-    assert_eq!(read(&Choice { rate: Some(1.0), ..Choice::default() }, &path).record.rate(), 1.0);
+    let record = Choice::default().read(&path).unwrap().record;
+    assert!(!record.is_equally_spaced() && record.time(2) == 3.0);
+    let stepped = Choice { rate: Some(1.0), ..Choice::default() }.read(&path).unwrap();
+    assert_eq!(stepped.record.rate(), 1.0);
+    let said = "the 1 Hz of --rate were taken, though the file says 0.8 Hz";
+    assert_eq!(stepped.warnings, [said]);
 }
 
 #[test]
