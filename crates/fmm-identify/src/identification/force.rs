@@ -97,8 +97,8 @@ impl ForceResults {
     }
 }
 
-/// What noise of a measured motion, and its averaging, does to a fit of forces: it bends what is not proportional to the
-/// motion, turns directions, and makes factors too small where squares of it are summed.
+/// Effect of the noise of a measured motion, and of its averaging, on a fit of forces: it bends what is not proportional
+/// to the motion, turns directions, and makes factors too small where squares of it are summed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct MotionNoise {
     /// Steps by which the fit would follow the other motions that the records may be along, all values each; their

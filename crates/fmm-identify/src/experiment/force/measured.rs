@@ -1,4 +1,4 @@
-//! What was measured of a motion, the motion by it, and how its noise and the averaging may have moved that.
+//! Measured series of a motion, the motion by them, and how far their noise and the averaging may have moved it.
 
 use crate::experiment::force::smoothed::Smoothed;
 use crate::law::along::MeasuredMotion;

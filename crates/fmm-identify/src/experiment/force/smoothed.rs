@@ -19,7 +19,7 @@ pub(crate) struct Smoothed {
 struct Averaged {
     /// Neighbours to either side.
     width: usize,
-    /// What it took off.
+    /// Differences that it took off.
     rest: Vec<f64>,
 }
 
@@ -101,8 +101,8 @@ impl Smoothed {
         Self { values: sum(&self.values, &noise.values), slopes: sum(&self.slopes, &noise.slopes), ..self.clone() }
     }
 
-    /// What was averaged, over the standard deviation of the series (1), and the samples over which it was; `None` if
-    /// nothing was.
+    /// Noise that was averaged, over the standard deviation of the series (1), and the samples over which it was; `None`
+    /// if nothing was.
     pub(crate) fn noise(&self) -> Option<(f64, usize)> {
         let Averaged { width, rest } = self.averaged.as_ref()?;
         let mean = self.values.iter().sum::<f64>() / self.values.len() as f64;
