@@ -203,8 +203,8 @@ impl IdentifyError {
         Self::OutOfRange { what: format!("{subject} must be {allowed}, not {}", Rounded::every_digit(value)), value }
     }
 
-    /// A finding of which value or variance lies beyond the range of numbers, as a mass of 1e300 kg makes it, or a level
-    /// of which a fit leaves nothing.
+    /// A finding of which value or variance lies beyond the range of numbers, as a mass of 1e300 kg makes it, or a
+    /// level of which a fit leaves nothing.
     pub(crate) fn beyond_numbers(parameter: &Parameter, value: f64) -> Self {
         let (name, unit) = (parameter.name(), parameter.unit());
         let cause = if value.abs() < 1.0 { "the fit leaves nothing of it, or the" } else { "check the" };

@@ -133,8 +133,8 @@ impl Campaign {
         self.entries.first().map_or_else(Vec::new, |entry| entry.description.keys().map(String::as_str).collect())
     }
 
-    /// Keeps the list in `folder`, in the place of an earlier one of the same campaign: rows of entries that changed are
-    /// known by their contents, and made again.
+    /// Keeps the list in `folder`, in the place of an earlier one of the same campaign: rows of entries that changed
+    /// are known by their contents, and made again.
     ///
     /// # Errors
     /// If a campaign by other options is there, or one of other records throughout.

@@ -97,8 +97,8 @@ impl ForceResults {
     }
 }
 
-/// Effect of the noise of a measured motion, and of its averaging, on a fit of forces: it bends what is not proportional
-/// to the motion, turns directions, and makes factors too small where squares of it are summed.
+/// Effect of the noise of a measured motion, and of its averaging, on a fit of forces: it bends what is not
+/// proportional to the motion, turns directions, and makes factors too small where squares of it are summed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct MotionNoise {
     /// Steps by which the fit would follow the other motions that the records may be along, all values each; their
@@ -172,8 +172,8 @@ impl Warning {
         warnings
     }
 
-    /// Warning about `noise` of the motion, or about samples that are too far apart, on which findings are more uncertain
-    /// than by the residuals, if any is.
+    /// Warning about `noise` of the motion, or about samples that are too far apart, on which findings are more
+    /// uncertain than by the residuals, if any is.
     fn of_motion_noise(identification: &Identification, noise: Option<AveragedNoise>) -> Option<Self> {
         let findings = identification.findings.iter();
         let rests_on = |finding: &&Finding| finding.part(Source::Motion) > finding.part(Source::Residuals);

@@ -81,8 +81,8 @@ impl fmt::Display for FrictionChange {
     }
 }
 
-/// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, and where
-/// the records do not tell.
+/// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, and
+/// where the records do not tell.
 fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Option<Asked> {
     let is_next = |extended: &Candidate| extended.terms.has(term) && !found.fitted.model.terms.has(term);
     let extended = with_change(&Candidate::fitted(found)).filter(is_next)?;

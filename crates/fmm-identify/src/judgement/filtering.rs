@@ -71,8 +71,8 @@ pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) 
 }
 
 /// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that
-/// it leaves out; `None` if nothing is left to explain, a filter is known the samples are unequally spaced, or there is no
-/// vibration.
+/// it leaves out; `None` if nothing is left to explain, a filter is known, the samples are unequally spaced, or there
+/// is no vibration.
 ///
 /// # Errors
 /// Of a record that the filter leaves too little of, or of the fit.

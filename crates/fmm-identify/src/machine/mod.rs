@@ -139,8 +139,8 @@ impl Machine {
 
     /// The same machine with friction that is known to change by no more than this standard uncertainty for each half
     /// cycle, relative to itself (1): each fit by a law of the sliding speed then has the term
-    /// [change](Terms::with_change), of which this is known, and its uncertainty is in that of the findings. Laws with internal
-    /// state do not take the term: for them it changes nothing.
+    /// [change](Terms::with_change), of which this is known, and its uncertainty is in that of the findings. Laws with
+    /// internal state do not take the term: for them it changes nothing.
     ///
     /// # Errors
     /// [`ModelError::NotPositive`] if it is zero or negative.

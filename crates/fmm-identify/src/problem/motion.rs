@@ -90,8 +90,8 @@ impl Table {
 /// Straight pieces of a load that changes, which are within 1e-4 of an exponential of 0.8 over them.
 const PIECES: usize = 24;
 
-/// Distance in time (s) of load factors (1), and these over their mean on the path slid, for a `change` (1/s) that slows
-/// down at a rate of `slowing` (1/s):
+/// Distance in time (s) of load factors (1), and these over their mean on the path slid, for a `change` (1/s) that
+/// slows down at a rate of `slowing` (1/s):
 ///
 /// ```text
 /// exp(w τ φ(r τ)),     φ(x) = (1 − e⁻ˣ)/x,     τ = t − ⟨t⟩

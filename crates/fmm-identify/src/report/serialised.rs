@@ -165,8 +165,8 @@ impl Serialize for ScoreTest {
 
 /// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` and `excluded_without_fit`
 /// (names), `complete`, `signs`, `friction_change` (of the preferred law), `unseen_damping` (where it has none),
-/// `friction_bound` (where it has no friction), `p` and `scores` (one per model, by which laws are preferred), `models`, `preparation` (one object, or a list if there
-/// are several records), `warnings`.
+/// `friction_bound` (where it has no friction), `p` and `scores` (one per model, by which laws are preferred),
+/// `models`, `preparation` (one object, or a list if there are several records), `warnings`.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();

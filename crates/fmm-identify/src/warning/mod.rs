@@ -82,7 +82,8 @@ pub enum Warning {
         /// Names of the parameters, separated by commas.
         parameters: String,
     },
-    /// Samples of a measured motion are so far apart that its slopes make findings more uncertain than the residuals do.
+    /// Samples of a measured motion are so far apart that its slopes make findings more uncertain than the residuals
+    /// do.
     CoarseMotion {
         /// Names of the parameters, separated by commas.
         parameters: String,

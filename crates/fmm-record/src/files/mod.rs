@@ -56,9 +56,9 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 /// # Text
 ///
 /// Separated by commas, semicolons, tabs or bars, or aligned by blanks, in UTF-8 or UTF-16. Files of LabVIEW (`.lvm`),
-/// SignalExpress, Tektronix, Rigol, PicoScope and catman, the `sep=` of Excel, and lines of a serial port with a time of
-/// day before an arrow or a name before each number need nothing said. Of a ZIP archive the largest file is read. Sheets of
-/// workbooks, JSON and sound are read by the same rules; the whole numbers of a sound are counts.
+/// SignalExpress, Tektronix, Rigol, PicoScope and catman, the `sep=` of Excel, and lines of a serial port with a time
+/// of day before an arrow or a name before each number need nothing said. Of a ZIP archive the largest file is read.
+/// Sheets of workbooks, JSON and sound are read by the same rules; the whole numbers of a sound are counts.
 ///
 /// | what | found by default |
 /// |---|---|

@@ -29,8 +29,8 @@ pub(crate) struct AveragedNoise {
 const REPEATS: u64 = 10;
 
 impl Measured {
-    /// The motion, at rest up to `rest_speed` (m/s): velocities follow from the positions if none were measured, positions
-    /// from the velocities, from 0 on, and accelerations from the velocities, averaged as these were.
+    /// The motion, at rest up to `rest_speed` (m/s): velocities follow from the positions if none were measured,
+    /// positions from the velocities, from 0 on, and accelerations from the velocities, averaged as these were.
     pub(super) fn motion(&self, times: &[f64], rest_speed: f64) -> MeasuredMotion {
         let (velocities, slopes) = match (&self.velocities, &self.positions) {
             (Some(velocities), _) => (velocities.values.clone(), velocities.slopes.clone()),
@@ -47,9 +47,9 @@ impl Measured {
         MeasuredMotion { times: times.to_vec(), positions, velocities, accelerations, rest_speed }
     }
 
-    /// Motions that it could be as well, each with the weight (1) of its effects in a standard uncertainty: with as much
-    /// noise once more, several times, if there is any, and averaged once more, as what averaging does lies within what
-    /// it does again; a series that is not averaged has the slopes of more neighbours there.
+    /// Motions that it could be as well, each with the weight (1) of its effects in a standard uncertainty: with as
+    /// much noise once more, several times, if there is any, and averaged once more, as what averaging does lies within
+    /// what it does again; a series that is not averaged has the slopes of more neighbours there.
     pub(super) fn others(&self, times: &[f64], rest_speed: f64) -> Vec<(f64, MeasuredMotion)> {
         let motion = |weight: f64, measured: Self| (weight, measured.motion(times, rest_speed));
         let repeats = if self.noise().is_some() { REPEATS } else { 0 };

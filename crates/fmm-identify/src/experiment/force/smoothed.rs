@@ -101,8 +101,8 @@ impl Smoothed {
         Self { values: sum(&self.values, &noise.values), slopes: sum(&self.slopes, &noise.slopes), ..self.clone() }
     }
 
-    /// Noise that was averaged, over the standard deviation of the series (1), and the samples over which it was; `None`
-    /// if nothing was.
+    /// Noise that was averaged, over the standard deviation of the series (1), and the samples over which it was;
+    /// `None` if nothing was.
     pub(crate) fn noise(&self) -> Option<(f64, usize)> {
         let Averaged { width, rest } = self.averaged.as_ref()?;
         let mean = self.values.iter().sum::<f64>() / self.values.len() as f64;
@@ -112,8 +112,8 @@ impl Smoothed {
     }
 }
 
-/// Neighbours to either side over which noise is averaged best: those for which the rest is least beside the growth that
-/// noise may have; `None` where that are the fewest, so that no noise is seen.
+/// Neighbours to either side over which noise is averaged best: those for which the rest is least beside the growth
+/// that noise may have; `None` where that are the fewest, so that no noise is seen.
 fn width_for(times: &[f64], values: &[f64]) -> Option<usize> {
     let count = times.len();
     let stride = count.div_ceil(LOOKED_AT);

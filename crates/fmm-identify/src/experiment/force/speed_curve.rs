@@ -5,8 +5,8 @@ use fmm_fit::{effective_count, median_deviation};
 use crate::experiment::force::ForceRecord;
 use fmm_model::Estimated;
 
-/// Friction at about one speed: half the difference between the median forces of the two directions, or, of a motion that
-/// goes one way, the median force along it.
+/// Friction at about one speed: half the difference between the median forces of the two directions, or, of a motion
+/// that goes one way, the median force along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedBin {
     /// Median speed (m/s, or by the unit of position).
@@ -14,8 +14,8 @@ pub struct SpeedBin {
     /// Friction, in the unit of the force.
     pub friction: Estimated,
     /// Force that does not change with the direction, half the sum of the two medians, in the same unit: the zero of
-    /// the sensor, gravity, or levels that differ by direction; `None` of a motion that goes one way, where it is in the
-    /// friction.
+    /// the sensor, gravity, or levels that differ by direction; `None` of a motion that goes one way, where it is in
+    /// the friction.
     pub offset: Option<Estimated>,
     /// Median normal load (N); `None` where none was measured.
     pub load: Option<f64>,
@@ -43,8 +43,8 @@ const MEDIAN: f64 = 1.253_314_137_315_500_3;
 
 impl ForceRecord {
     /// Friction in up to `count` bins of speed with as many samples each, slow ones first; without those that only one
-    /// of two directions passes. Uncertainties take the scatter within a bin for noise, of which neighbouring samples share
-    /// what their correlation says; a force that is bent within a bin, or differs from pass to pass, is in them.
+    /// of two directions passes. Uncertainties take the scatter within a bin for noise, of which neighbouring samples
+    /// share what their correlation says; a force that is bent within a bin, or differs from pass to pass, is in them.
     ///
     /// ```
     /// use fmm_identify::ForceRecord;
