@@ -5,7 +5,6 @@ use fmm_fit::{EstimateStatus, Fit};
 use crate::experiment::clock::Clock;
 use crate::finding::{Finding, Origin, Source};
 use crate::identification::force::MotionNoise;
-use crate::identification::limits::inseparable;
 use crate::machine::Machine;
 use crate::quantities::derived::{Derived, Inputs, KNOWN};
 use crate::quantities::table::Table;
@@ -95,4 +94,13 @@ fn variances(
     // What is left of the whole is that of the residuals.
     let by_knowledge: f64 = covariance.of_knowledge(gradient).iter().map(|(_, variance)| variance).sum();
     Some(std::iter::once((Source::Residuals, (random - by_knowledge).max(0.0))).chain(parts).collect())
+}
+
+/// Parameters of a fit that are one with another, as their correlation shows: neither is determined.
+pub(crate) fn inseparable(fit: &Fit) -> Vec<usize> {
+    /// Correlation from which on two parameters are one.
+    const ONE: f64 = 1.0 - 1e-9;
+    let count = fit.estimates().len();
+    let as_one = |i: usize, j: usize| i != j && fit.correlation(i, j).is_some_and(|r| r.abs() > ONE);
+    (0..count).filter(|i| (0..count).any(|j| as_one(*i, j))).collect()
 }

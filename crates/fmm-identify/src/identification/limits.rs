@@ -5,6 +5,7 @@ use fmm_model::Restoring;
 
 use crate::experiment::Experiment;
 use crate::finding::Finding;
+use crate::identification::findings::inseparable;
 use crate::identification::{FittedMotion, Identification};
 use crate::law::naming::LINEAR;
 use crate::machine::Scale;
@@ -142,13 +143,4 @@ impl Warning {
         warnings.extend(structure.coloured_noise(identification.covariance.inflation));
         warnings
     }
-}
-
-/// Parameters of a fit that are one with another, as their correlation shows: neither is determined.
-pub(crate) fn inseparable(fit: &Fit) -> Vec<usize> {
-    /// Correlation from which on two parameters are one.
-    const ONE: f64 = 1.0 - 1e-9;
-    let count = fit.estimates().len();
-    let as_one = |i: usize, j: usize| i != j && fit.correlation(i, j).is_some_and(|r| r.abs() > ONE);
-    (0..count).filter(|i| (0..count).any(|j| as_one(*i, j))).collect()
 }
