@@ -194,6 +194,15 @@ pub enum Sampling {
         /// The first of them.
         first: f64,
     },
+    /// From a column that counts the time since 1970 in a part of a second; the record begins at 0 s.
+    Epoch {
+        /// Its name.
+        name: String,
+        /// The unit: `ms`, `µs` or `ns`.
+        unit: &'static str,
+        /// The first of its numbers.
+        first: f64,
+    },
     /// From a scalar variable in the file that holds the rate (Hz).
     RateVariable {
         /// Its name.
@@ -236,6 +245,9 @@ impl std::fmt::Display for Sampling {
                     f,
                     "found from the days in \"{name}\", which are those of a calendar, counted from the first, {first}"
                 )
+            }
+            Self::Epoch { name, unit, first } => {
+                write!(f, "found from the {unit} since 1970 in \"{name}\", counted from the first, {first}")
             }
             Self::RateVariable { name, rate } => write!(f, "read as {} Hz from the variable \"{name}\"", hertz(*rate)),
             Self::IntervalVariable { name, interval } => {

@@ -14,6 +14,8 @@ pub(crate) struct Clock {
     pub(crate) is_time: bool,
     /// True if it is called a number of samples.
     pub(crate) is_counter: bool,
+    /// True if it has no name, as the column of row numbers in many tables has none.
+    pub(crate) is_nameless: bool,
     unit: Written,
 }
 
@@ -28,22 +30,25 @@ enum Written {
 }
 
 /// Words for time.
-const TIMES: &str = "time times zeit timestamp timestamps zeitstempel elapsed uptime temps tiempo";
+const TIMES: &str = "time times zeit timestamp timestamps zeitstempel elapsed uptime temps tiempo datetime";
+
+/// Words for the steps of a clock, which are time only in a unit of time.
+const TICKS: &str = "tick ticks clock";
 
 /// Words that may stand beside one for time.
 const FILLERS: &str = "\
-    stamp stamps rel relative abs absolute total since start system device sensor axis vector values in";
+    stamp stamps rel relative abs absolute total since start system device sensor axis vector values in date datum";
 
 /// Words for a number of samples.
 const COUNTERS: &str = "\
-    sample samples index idx ind frame frames row rows scan scans point points sequence seq number num no \
+    sample samples index idx ind frame frames row rows scan scans sweep point points sequence seq number num no \
     nr id counter record line unnamed messwert datensatz";
 
 impl Clock {
     /// Clock of a column without a name.
     #[cfg(any(feature = "mat", feature = "npy"))]
     pub(crate) fn nameless() -> Self {
-        Self { is_time: false, is_counter: false, unit: Written::Nothing }
+        Self { is_time: false, is_counter: false, is_nameless: true, unit: Written::Nothing }
     }
 
     /// Clock by its name.
@@ -57,13 +62,14 @@ impl Clock {
         let is_letter = stem.trim().eq_ignore_ascii_case("t") && !matches!(unit, Written::Other(_));
         let begins = stem_words.first().is_some_and(|word| is_in(TIMES, word));
         let is_bare_unit = is_known && stem_words.is_empty();
-        let is_time = only_time || is_letter || is_bare_unit || (begins && is_known && in_brackets);
+        let ticks = is_known && !stem_words.is_empty() && stem_words.iter().all(|word| is_in(TICKS, word));
+        let is_time = only_time || is_letter || is_bare_unit || ticks || (begins && is_known && in_brackets);
         let is_nameless = matches!(stem.trim(), "" | "#");
 
         let all_count = |words: &[String]| !words.is_empty() && words.iter().all(|word| is_in(COUNTERS, word));
         let unit_counts = matches!(&unit, Written::Other(unit) if all_count(&words(unit)));
-        let is_counter = !is_time && !is_known && (is_nameless || all_count(&stem_words) || unit_counts);
-        Self { is_time, is_counter, unit }
+        let is_counter = !is_time && !is_known && !is_nameless && (all_count(&stem_words) || unit_counts);
+        Self { is_time, is_counter, is_nameless: is_nameless && unit == Written::Nothing, unit }
     }
 
     /// The same of a column whose unit was given, if it was.
@@ -84,9 +90,14 @@ impl Clock {
         self.is_time || self.is_counter || !matches!(self.unit, Written::Other(_))
     }
 
-    /// True if uniform numbers count samples: whole ones in no unit.
+    /// True if uniform numbers count samples: whole ones in no unit, unless they are the time since 1970.
     pub(crate) fn counts(&self, numbers: &[f64]) -> bool {
-        self.unit == Written::Nothing && are_whole(numbers)
+        self.unit == Written::Nothing && are_whole(numbers) && epoch(numbers).is_none()
+    }
+
+    /// True if a column so called is no motion: it counts, or has no name.
+    pub(crate) fn is_no_motion(&self) -> bool {
+        self.is_counter || self.is_nameless
     }
 
     /// Brings the time stamps of the series called `name` to seconds, and tells what they were; `by_nature` is true if
@@ -98,6 +109,11 @@ impl Clock {
     pub(crate) fn to_seconds(&self, name: &str, by_nature: bool, times: &mut [f64]) -> Result<Sampling, RecordError> {
         // A stamp of a computer is a whole number of whatever its clock counts.
         let is_vague = by_nature || (self.is_time && name.to_lowercase().contains("stamp"));
+        let since = epoch(times).filter(|_| self.unit == Written::Nothing && !self.is_counter);
+        if let (Some((unit, seconds)), Some(&first)) = (since, times.first()) {
+            times.iter_mut().for_each(|time| *time = seconds * (*time - first));
+            return Ok(Sampling::Epoch { name: name.into(), unit, first });
+        }
         match &self.unit {
             Written::Other(unit) if !self.is_counter => {
                 let what = format!(
@@ -119,6 +135,15 @@ impl Clock {
         }
         Ok(Sampling::Times { name: name.into() })
     }
+}
+
+/// The unit of stamps that count time since 1970 in parts of a second, by their size, with its seconds; of the years
+/// 2000 to 2100, of which those in one unit are no year in another.
+fn epoch(times: &[f64]) -> Option<(&'static str, f64)> {
+    const YEARS: std::ops::Range<f64> = 946_684_800.0..4_102_444_800.0;
+    let ends = [*times.first()?, *times.last()?];
+    let units = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+    units.into_iter().find(|(_, seconds)| ends.iter().all(|time| YEARS.contains(&(time * seconds))))
 }
 
 /// Seconds of a day.
@@ -187,7 +212,8 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
     if let Some(group) = groups.iter().rev().find(|group| !is_remark(&group.text)) {
         return (bare, Written::Other(group.text.clone()), true);
     }
-    if let Some((stem, unit)) = bare.split_once('/').filter(|(stem, _)| !stem.trim().is_empty()) {
+    let is_behind = |unit: &str| !words(unit).iter().all(|word| is_in(TIMES, word));
+    if let Some((stem, unit)) = bare.split_once('/').filter(|(stem, unit)| !stem.trim().is_empty() && is_behind(unit)) {
         let unit = unit.trim();
         let written = seconds_in(unit).map_or_else(|| Written::Other(unit.to_owned()), Written::Seconds);
         return (stem.trim().to_owned(), written, false);
@@ -203,7 +229,7 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
     {
         let stem = bare[..bare.len() - last.len()].trim_end_matches(|sign: char| !sign.is_alphanumeric());
         // Of anything but time these are other things: `v_ms` is a velocity, `x_min` a minimum.
-        if stem.eq_ignore_ascii_case("t") || words(stem).iter().any(|word| is_in(TIMES, word)) {
+        if stem.eq_ignore_ascii_case("t") || words(stem).iter().any(|word| is_in(TIMES, word) || is_in(TICKS, word)) {
             return (stem.to_owned(), Written::Seconds(seconds), false);
         }
     }

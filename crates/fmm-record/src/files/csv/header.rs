@@ -187,7 +187,7 @@ fn are_units(fields: &[String]) -> bool {
         is_unit(field)
             || matches!(&***field, "-" | "1" | "%")
             || field.parse::<f64>().is_ok()
-            || Clock::of(field).is_counter
+            || Clock::of(field).is_no_motion()
     };
     let mut filled = fields.iter().filter(|field| !field.is_empty()).peekable();
     filled.peek().is_some() && filled.clone().any(|field| is_unit(&field)) && filled.all(|field| may_be(&field))

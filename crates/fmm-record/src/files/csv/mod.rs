@@ -50,7 +50,7 @@ impl Reader {
         };
         let first = time.unwrap_or(table.first());
         let is_other =
-            |index: &usize| *index != first && !table.is_blank(*index) && !Clock::of(&columns[*index]).is_counter;
+            |index: &usize| *index != first && !table.is_blank(*index) && !Clock::of(&columns[*index]).is_no_motion();
         let other = channel.or_else(|| (0..columns.len()).find(is_other));
         let may_be_time = self.clock(&columns[first]).may_be_time();
         let is_settled = channel.is_some() && self.rate.is_some();
@@ -73,12 +73,13 @@ impl Reader {
                 let [times, values] = self.rows(table, [first, second], &mut found)?;
                 let clock = self.clock(&found.columns[first]);
                 let is_uniform = uniform_grid(&times).is_ok();
-                let counts = found.clock.is_none() && (clock.is_counter || (is_uniform && clock.counts(&times)));
+                let may_count = is_uniform || clock.is_nameless;
+                let counts = found.clock.is_none() && (clock.is_counter || (may_count && clock.counts(&times)));
                 // The first column is time if it increases uniformly and does not count.
                 let time = (is_uniform && !counts).then_some(first);
                 match rate {
                     Some(rate) if time.is_none() || self.rate.is_some() => {
-                        let is_second = time.is_some() || counts || channel.is_some();
+                        let is_second = time.is_some() || counts || clock.is_nameless || channel.is_some();
                         let (channel, values) = if is_second { (second, values) } else { (first, times) };
                         self.reading(found, time, channel, values, Scale::Rate(rate))
                     }
@@ -170,7 +171,7 @@ impl Reader {
             _ => None,
         };
         let is_channel =
-            |(index, name): &(usize, String)| Some(*index) != time && !blank[*index] && !Clock::of(name).is_counter;
+            |(index, name): &(usize, String)| Some(*index) != time && !blank[*index] && !Clock::of(name).is_no_motion();
         Ok(columns.into_iter().enumerate().filter(is_channel).collect())
     }
 

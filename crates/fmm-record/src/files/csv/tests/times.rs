@@ -212,3 +212,30 @@ fn rows_without_a_number_leave_gaps_where_any_spacing_is_taken() {
         Reader::default().any_spacing().repair().channel("v").read_from("t,v\n0,1\n1,NaN\n2,3\n3,4\n").unwrap();
     assert_eq!(repaired.record.values(), [1.0, 2.0, 3.0, 4.0]);
 }
+
+#[test]
+fn times_since_1970_are_told_by_their_size() {
+    for (unit, factor) in [("ms", 1e3), ("µs", 1e6), ("ns", 1e9)] {
+        for name in ["timestamp", "rosbagTimestamp", "x", ""] {
+            let stamp = |time: f64| (factor * (1_714_644_000.123 + time)).round();
+            let rows = [0.0, 0.002, 0.004].map(|time| format!("{},{}\n", stamp(time), 1.5 + time));
+            let reading = read_text(&format!("{name},v\n{}", rows.concat())).unwrap();
+            assert_eq!((reading.record.rate(), reading.record.start()), (500.0, 0.0), "{name}, {unit}");
+            let expected = Sampling::Epoch { name: name.into(), unit, first: stamp(0.0) };
+            assert_eq!((reading.sampling, &*reading.channel), (expected, "v"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn ticks_tell_time_in_a_unit_of_time_only() {
+    for (head, factor) in
+        [("tick_us;v", 1e6), ("ticks [ms];v", 1e3), ("Datum/Zeit;v", 1.0), ("Date Time;v", 1.0), (";v", 1.0)]
+    {
+        let rows = [0.0, 0.002, 0.004].map(|time| format!("{};1.5\n", factor * time));
+        let reading = read_text(&format!("{head}\n{}", rows.concat())).unwrap();
+        assert_eq!((reading.record.rate(), &*reading.channel), (500.0, "v"), "{head}");
+    }
+    let counts = read_text("ticks;v\n0;1\n2;2\n4;1\n").unwrap_err().to_string();
+    assert!(counts.contains("counts samples"), "{counts}");
+}
