@@ -1,4 +1,4 @@
-//! Time of a series by its name, and the sampling rate by scalars beside the data.
+//! Time of a series by its name and its numbers.
 
 use crate::error::RecordError;
 use crate::files::reading::Reading;
@@ -234,53 +234,6 @@ fn unit_of_time(name: &str) -> (String, Written, bool) {
         }
     }
     (bare, Written::Nothing, false)
-}
-
-/// Names of scalars that hold a rate (Hz), in lower case and without underscores.
-const RATES: &str = "fs rate actualrate samplerate samplingrate samplefrequency samplingfrequency fsample fsampling";
-
-/// Names of scalars that hold an interval (s), in lower case and without underscores.
-const INTERVALS: &str = "\
-    dt ts deltat deltax increment xincrement tsample sampletime samplingtime sampleinterval samplinginterval";
-
-/// True for the name of a scalar that states a rate or an interval.
-#[cfg(feature = "hdf5")]
-pub(crate) fn is_rate(name: &str) -> bool {
-    let plain = name.replace(['_', ' '], "").to_lowercase();
-    is_in(RATES, &plain) || is_in(INTERVALS, &plain)
-}
-
-/// Largest difference of two statements of the rate, relative.
-const AGREEMENT: f64 = 1e-3;
-
-/// Sampling rate by scalars with their names (Hz); `None` if none of them states a rate.
-pub(crate) fn stated<'a>(
-    scalars: impl Iterator<Item = (&'a str, f64)>,
-) -> Result<Option<(f64, Sampling)>, RecordError> {
-    let mut found: Option<(f64, Sampling, &str)> = None;
-    for (name, value) in scalars {
-        // A field is called as its structure is, with its own name behind a point.
-        let own = name.rsplit('.').next().unwrap_or(name);
-        let plain = own.replace(['_', ' '], "").to_lowercase();
-        let is_interval = is_in(INTERVALS, &plain);
-        if !is_interval && !is_in(RATES, &plain) {
-            continue;
-        }
-        let (rate, sampling) = if is_interval {
-            (value.recip(), Sampling::IntervalVariable { name: name.into(), interval: value })
-        } else {
-            (value, Sampling::RateVariable { name: name.into(), rate: value })
-        };
-        match &found {
-            Some((first_rate, _, first)) if (rate - first_rate).abs() > AGREEMENT * first_rate.abs() => {
-                let what = format!("\"{first}\" says {first_rate} Hz, but \"{name}\" says {rate} Hz; give the rate");
-                return Err(RecordError::time(None, what));
-            }
-            Some(_) => {}
-            None => found = Some((rate, sampling, name)),
-        }
-    }
-    Ok(found.map(|(rate, sampling, _)| (rate, sampling)))
 }
 
 #[cfg(test)]

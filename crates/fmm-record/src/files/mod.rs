@@ -12,6 +12,7 @@ mod mat;
 mod npy;
 mod number;
 mod packed;
+mod rate;
 pub(crate) mod reading;
 #[cfg(any(feature = "json", feature = "wav", feature = "workbook"))]
 mod tables;

@@ -3,9 +3,10 @@
 use crate::error::{RecordError, listed};
 use crate::files::Reader;
 use crate::files::arrays::{Array, Notation, Series, Slice};
+use crate::files::clock::{Clock, are_whole};
 #[cfg(feature = "hdf5")]
-use crate::files::clock::is_rate;
-use crate::files::clock::{Clock, are_whole, stated};
+use crate::files::rate::is_rate;
+use crate::files::rate::stated;
 use crate::files::reading::{Column, Reading, only, without_unit};
 use crate::sampling::{Sampling, uniform_grid};
 

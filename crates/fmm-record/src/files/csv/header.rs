@@ -1,9 +1,12 @@
 //! Header of a table: names of the columns, their units, statements about the sampling.
 
+use std::collections::VecDeque;
+
 use super::lines::Line;
+use super::statement::statements;
 use crate::error::RecordError;
 use crate::files::clock::Clock;
-use crate::files::csv::fields::{Kind, Row, Separator, not_a_number, number, ragged, text};
+use crate::files::csv::fields::{Kind, Row, Separator, is_value, not_a_number, number, ragged, text};
 use crate::units::{WrittenUnit, seconds_in};
 
 /// Lines above a table.
@@ -36,8 +39,9 @@ pub(super) fn header(
     // A rule of dashes may stand between names and rows.
     let is_said = |line: &Line| line.text.iter().any(|byte| byte.is_ascii_alphanumeric() || !byte.is_ascii());
     let above = &above[..above.iter().rposition(is_said).map_or(0, |last| last + 1)];
-    let mut found =
-        Header { stated: above.iter().filter_map(|line| statement(line, separator)).collect(), ..Header::default() };
+    let comments = above.iter().chain(row).flat_map(|line| &line.comments);
+    let stated = above.iter().map(|line| &line.text).chain(comments).flat_map(|text| statements(text, separator));
+    let mut found = Header { stated: stated.collect(), ..Header::default() };
     let fitting =
         |line: usize| above.get(line).filter(|_| line >= begin).and_then(|line| fitted(&line.text, columns, separator));
     if let Some(names) = signal_express(above, columns, separator) {
@@ -47,25 +51,41 @@ pub(super) fn header(
         return Ok(found.named(names));
     }
     let commented = || {
-        let comment = row.and_then(|row| row.comment.as_deref());
-        let names = comment.and_then(|comment| names_in(comment, columns, separator));
+        let labels = row.and_then(|row| fitted(row.labels.as_deref()?, columns, separator));
+        let names = labels.or_else(|| names_in(&row?.comments, columns, separator));
         names.unwrap_or_else(|| positions(width))
     };
     let Some(last) = above.len().checked_sub(1).filter(|last| *last >= begin) else {
         return Ok(found.named(commented()));
     };
+    // A row of remarks may stand below that of the units.
+    let is_remark = last >= 2
+        && fitting(last).is_some_and(|remarks| !are_units(&remarks))
+        && fitting(last - 1).is_some_and(|units| are_units(&units))
+        && fitting(last - 2).is_some_and(|names| are_names(&names));
+    let last = if is_remark { last - 1 } else { last };
+    let numbers: Vec<usize> = (0..width).filter(|column| columns[*column] == Kind::Number).collect();
     let Some(names) = fitting(last) else {
-        let fields = Row::of(&above[last].text, separator).len();
-        if let (Some(row), true) = (row, fields > 1) {
-            return Err(ragged(row.number, fields, width, separator));
+        let fields = Row::of(&above[last].text, separator);
+        let numbered = row.filter(|row| fields.len() + 1 == width && row.text.trim_ascii_start().starts_with(b"\"1\""));
+        if numbered.is_some() {
+            // R gives no name to the numbers of its rows.
+            let names = (0..fields.len()).map(|column| text(fields.field(column)));
+            return Ok(found.named([String::new()].into_iter().chain(names).collect()));
         }
-        // The end of a preamble.
+        // A preamble has numbers behind words.
+        let is_preamble = !is_value(fields.field(0)) && (1..fields.len()).any(|column| is_value(fields.field(column)));
+        if let (Some(row), true) = (row, fields.len() > 1 && !is_preamble) {
+            return Err(ragged(row.number, fields.len(), width, separator));
+        }
         return Ok(found.named(commented()));
     };
-    let is_number = |column: &usize| number(names[*column].as_bytes()).is_some();
-    let mut numbers = (0..width).filter(|column| columns[*column] == Kind::Number);
-    let first = numbers.next();
-    if first.into_iter().chain(numbers).any(|column| is_number(&column)) {
+    let is_title = numbers.len() > 1 && !names[0].is_empty() && names[1..].iter().all(String::is_empty);
+    if is_title {
+        return Ok(found.named(commented()));
+    }
+    let first = numbers.first().copied();
+    if numbers.iter().any(|column| number(names[*column].as_bytes()).is_some()) {
         // A row without its first number must not be lost; the last line of a preamble has a name there.
         if let (Some(column), Some(line)) = (first.filter(|first| names[*first].is_empty()), above.get(last)) {
             return Err(not_a_number(line.number, &column.to_string(), ""));
@@ -109,18 +129,6 @@ pub(super) fn is_called(line: &Line, name: &[u8]) -> bool {
 
 fn positions(width: usize) -> Vec<String> {
     (0..width).map(|column| column.to_string()).collect()
-}
-
-/// A name and the number behind it on the same line.
-fn statement(line: &Line, separator: Separator) -> Option<(String, f64)> {
-    let row = Row::of(&line.text, separator);
-    let (value, _) = (1..row.len()).find_map(|column| number(row.field(column)))?;
-    let name = text(row.field(0)).trim_end_matches([':', '=']).trim().to_owned();
-    // A third field may be a unit, which must be that of a time or a rate.
-    let units =
-        (1..row.len()).map(|column| row.field(column)).filter(|field| !field.is_empty() && number(field).is_none());
-    let plain = units.map(text).all(|unit| matches!(&*unit, "s" | "Hz" | "S/s" | "Sa/s"));
-    plain.then_some((name, value))
 }
 
 /// The fields of a line as one for each column, if they fit.
@@ -167,14 +175,28 @@ fn aligned_names(line: &[u8], width: usize) -> Vec<String> {
     line.split("  ").map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()
 }
 
-/// Names in a comment right above the first row, if one of them is that of time.
-fn names_in(comment: &[u8], columns: &[Kind], separator: Separator) -> Option<Vec<String>> {
-    let comment = comment.trim_ascii();
-    let comment = &comment[comment.iter().take_while(|byte| matches!(byte, b'#' | b'%' | b' ' | b'\t')).count()..];
-    let names = [separator, Separator::Sign(b','), Separator::Sign(b';'), Separator::Sign(b'\t'), Separator::Blanks];
-    let mut fitting = names.into_iter().filter_map(|separator| fitted(comment, columns, separator));
-    fitting.find(|names| names.iter().any(|name| Clock::of(name).is_time))
+/// Names in the last of the comments right above the first row, if one of them is that of time; or in the one before, if
+/// the last has the units.
+fn names_in(comments: &VecDeque<Vec<u8>>, columns: &[Kind], separator: Separator) -> Option<Vec<String>> {
+    let signs = [separator, Separator::Sign(b','), Separator::Sign(b';'), Separator::Sign(b'\t'), Separator::Blanks];
+    signs.into_iter().find_map(|separator| {
+        let mut fitting = comments.iter().rev().map(|comment| {
+            let comment = comment.trim_ascii();
+            let marks = comment.iter().take_while(|byte| matches!(byte, b'#' | b'%' | b' ' | b'\t')).count();
+            fitted(&comment[marks..], columns, separator)
+        });
+        let is_time = |names: &Vec<String>| names.iter().any(|name| Clock::of(name).is_time);
+        let last = fitting.next()??;
+        let before = fitting.next().flatten().filter(|names| are_units(&last) && are_names(names) && is_time(names));
+        match before {
+            Some(names) => Some(names.iter().zip(&last).map(|(name, unit)| with_unit(name, unit)).collect()),
+            None => Some(last).filter(is_time),
+        }
+    })
 }
+
+/// What loggers of Campbell write in place of the units of stamps and record numbers.
+const OF_LOGGER: [&str; 2] = ["TS", "RN"];
 
 /// True for fields that are units, or stand in the places of units.
 fn are_units(fields: &[String]) -> bool {
@@ -186,6 +208,7 @@ fn are_units(fields: &[String]) -> bool {
     let may_be = |field: &&String| {
         is_unit(field)
             || matches!(&***field, "-" | "1" | "%")
+            || OF_LOGGER.contains(&&***field)
             || field.parse::<f64>().is_ok()
             || Clock::of(field).is_no_motion()
     };
@@ -212,7 +235,7 @@ fn plain(unit: &str) -> &str {
 
 /// A name with the unit below it.
 fn with_unit(name: &str, unit: &str) -> String {
-    let is_number = unit.parse::<f64>().is_ok();
+    let is_none = unit.parse::<f64>().is_ok() || OF_LOGGER.contains(&unit);
     let unit = plain(unit);
-    if unit.is_empty() || is_number { name.to_owned() } else { format!("{name} [{unit}]") }
+    if unit.is_empty() || is_none { name.to_owned() } else { format!("{name} [{unit}]") }
 }

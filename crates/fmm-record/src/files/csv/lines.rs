@@ -1,5 +1,6 @@
 //! The lines of a text file, with their numbers.
 
+use std::collections::VecDeque;
 use std::io::{BufRead, ErrorKind};
 use std::sync::Arc;
 
@@ -9,6 +10,9 @@ use crate::error::RecordError;
 /// The longest line that is read (bytes). A file without line ends is refused instead of filling the memory.
 pub(crate) const LONGEST_LINE: usize = 1 << 20;
 
+/// Number of comments before a line that are looked at.
+const MOST_COMMENTS: usize = 100;
+
 /// A line that is neither blank nor a comment.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Line {
@@ -17,8 +21,10 @@ pub(super) struct Line {
     pub(super) text: Vec<u8>,
     /// True if a line end follows; it may be missing at the end of the file only.
     pub(super) is_ended: bool,
-    /// The comment right before it.
-    pub(super) comment: Option<Vec<u8>>,
+    /// The comments right before it, of many the last.
+    pub(super) comments: VecDeque<Vec<u8>>,
+    /// The names of its numbers, if they stand before each.
+    pub(super) labels: Option<Vec<u8>>,
 }
 
 /// Goes through the lines of a text, whose ends may be those of any system.
@@ -37,7 +43,8 @@ impl<R: BufRead> Lines<R> {
 
     /// Reads the next line that is neither blank nor a comment; false at the end.
     pub(super) fn next(&mut self, line: &mut Line) -> Result<bool, RecordError> {
-        line.comment = None;
+        line.comments.clear();
+        line.labels = None;
         while self.read(line)? {
             if line.number == 1 && line.text.starts_with("\u{FEFF}".as_bytes()) {
                 line.text.drain(..3);
@@ -47,11 +54,16 @@ impl<R: BufRead> Lines<R> {
             }
             match line.text.iter().find(|byte| !byte.is_ascii_whitespace()) {
                 None => {}
-                Some(b'#' | b'%') => line.comment = Some(std::mem::take(&mut line.text)),
+                Some(b'#' | b'%') => {
+                    line.comments.push_back(std::mem::take(&mut line.text));
+                    if line.comments.len() > MOST_COMMENTS {
+                        line.comments.pop_front();
+                    }
+                }
                 Some(_) => {
                     separate_stamp(&mut line.text);
                     if let Some((names, numbers)) = labelled(&line.text) {
-                        (line.comment, line.text) = (Some(names), numbers);
+                        (line.labels, line.text) = (Some(names), numbers);
                     }
                     return Ok(true);
                 }
@@ -115,18 +127,19 @@ fn separate_stamp(line: &mut Vec<u8>) {
     line.splice(at..at + ARROW.len(), [separator]);
 }
 
-/// The names and the numbers of a line of nothing but such pairs, `ms:12 v:0.5`, as plotters of serial ports take them,
-/// each with tabs between; `None` for any other line.
+/// The names and the numbers of a line of nothing but such pairs, `ms:12 v:0.5` or `ms=12 v=0.5`, as plotters of serial
+/// ports take them, each with tabs between; `None` for any other line, also one that repeats a name, as headers do.
 fn labelled(line: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
-    // Most lines have no colon, and are not looked at.
-    line.contains(&b':').then_some(())?;
-    let text = std::str::from_utf8(line).ok()?.replace(": ", ":");
+    // Most lines have neither mark, and are not looked at.
+    line.iter().any(|sign| matches!(sign, b':' | b'=')).then_some(())?;
+    let text = std::str::from_utf8(line).ok()?.replace('=', ":").replace(": ", ":");
     let pairs = text.split([' ', '\t', ',', ';']).filter(|pair| !pair.is_empty());
     let pairs: Vec<(&str, &str)> = pairs.map(|pair| pair.split_once(':')).collect::<Option<_>>()?;
     let is_pair = |(name, value): &(&str, &str)| {
         name.starts_with(|sign: char| sign.is_alphabetic()) && value.parse::<f64>().is_ok()
     };
-    if pairs.len() < 2 || !pairs.iter().all(is_pair) {
+    let is_repeated = |(at, (name, _)): (usize, &(&str, &str))| pairs[..at].iter().any(|(other, _)| other == name);
+    if pairs.len() < 2 || !pairs.iter().all(is_pair) || pairs.iter().enumerate().any(is_repeated) {
         return None;
     }
     let (names, numbers): (Vec<&str>, Vec<&str>) = pairs.into_iter().unzip();

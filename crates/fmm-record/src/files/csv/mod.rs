@@ -15,6 +15,7 @@ mod header;
 mod layout;
 mod lines;
 mod stamp;
+mod statement;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -23,8 +24,9 @@ use std::io::Read;
 
 use crate::error::RecordError;
 use crate::files::Reader;
-use crate::files::clock::{Clock, counter, stated};
+use crate::files::clock::{Clock, counter};
 use crate::files::csv::table::{Rows, Table};
+use crate::files::rate::stated;
 use crate::files::reading::{Reading, quoted};
 use crate::sampling::{Sampling, uniform_grid};
 

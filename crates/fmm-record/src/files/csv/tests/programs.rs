@@ -168,11 +168,16 @@ fn monitors_of_serial_ports() {
 
 #[test]
 fn names_before_each_number() {
-    for text in ["boot\nms:0 v:1.5\nms:2 v:2.5\nms:4 v:-1\n", "t_s: 0, v: 1.5\nt_s: 0.002, v: 2.5\nt_s: 0.004, v: -1\n"]
-    {
+    for text in [
+        "boot\nms:0 v:1.5\nms:2 v:2.5\nms:4 v:-1\n",
+        "t_s: 0, v: 1.5\nt_s: 0.002, v: 2.5\nt_s: 0.004, v: -1\n",
+        "ms=0 v=1.5\nms=2 v=2.5\nms=4 v=-1\n",
+    ] {
         let found = reading(text);
         assert_eq!((&*found.channel, found.record.values(), found.record.rate()), ("v", &[1.5, 2.5, -1.0][..], 500.0));
     }
+    let no_time = Reader::default().rate(500.0).channel("v").read_from("x:0,v:1.5\nx:2,v:2.5\nx:4,v:-1\n").unwrap();
+    assert_eq!(no_time.record.values(), [1.5, 2.5, -1.0]);
 }
 
 #[test]
@@ -184,4 +189,45 @@ fn fortran_and_bars() {
         let found = reading(text).record;
         assert_eq!((found.values(), found.rate()), (&[1.5, 2.5, -1.0][..], 500.0), "{text}");
     }
+}
+
+#[test]
+fn lines_above_a_table_that_are_no_header() {
+    let rows = "0.000,1.5\n0.002,2.5\n0.004,-1\n";
+    for text in [
+        format!("Mode,Detail\nWaveform Data,\n{rows}"),
+        format!("; Sample Rate 500\n; Channels 1\n{}", rows.replace(',', " ")),
+        format!(
+            "Title:\tTime\nDate:\t02-05-2024\nZ-axis size:\t1\n{}",
+            rows.replace("0.00", "7\t0.00").replace(',', "\t")
+        ),
+        format!("Name\tWeg\nMessrate: 500 Hz\tMessrate: 500 Hz\ns\tmm\n{}", rows.replace(',', "\t")),
+        format!("\"vel\",\"CR6\"\n\"TIME\",\"vel\"\n\"TS\",\"m/s\"\n\"\",\"Smp\"\n{rows}"),
+        format!("time\tvel\ns\tm/s\n\tring down\n{}", rows.replace(',', "\t")),
+        format!("# time vel\n# [s] [m/s]\n{}", rows.replace(',', " ")),
+        "\"time\" \"vel\"\n\"1\" 0 1.5\n\"2\" 0.002 2.5\n\"3\" 0.004 -1\n".to_owned(),
+    ] {
+        let width = text.lines().last().unwrap().split([',', '\t', ' ']).count();
+        let reader = if width == 3 { Reader::default().time(1).channel(2) } else { Reader::default() };
+        let found = reader.read_from(&*text).unwrap_or_else(|error| panic!("{error}:\n{text}"));
+        assert_eq!((found.record.values(), found.record.rate()), (&[1.5, 2.5, -1.0][..], 500.0), "{text}");
+    }
+}
+
+#[test]
+fn the_rate_is_stated_above_one_column() {
+    for head in [
+        "Sample Rate: 500 Hz. Sample values on linear scale.\nLength processed: 3 samples\n",
+        "Delta-X:0.002\nLength:3\n",
+        "# velocity of a fork\n# fs = 500 Hz\n",
+        "\"SampleRate\",500.0\n\"Time\",\"10:00:00.00\"\n",
+        "CH1(V),t0 =-1.5e+00, tInc = 2.0e-03,\n",
+    ] {
+        let end = if head.contains("tInc") { ",,\n" } else { "\n" };
+        let found =
+            read_text(&format!("{head}1.5{end}2.5{end}-1{end}")).unwrap_or_else(|error| panic!("{error}:\n{head}"));
+        assert_eq!((found.record.values(), found.record.rate()), (&[1.5, 2.5, -1.0][..], 500.0), "{head}");
+    }
+    let counted = read_text("Time interval :,2000.0uS\nindex,CH1\n0,1.5\n1,2.5\n2,-1\n").unwrap();
+    assert_eq!((counted.record.values(), counted.record.rate()), (&[1.5, 2.5, -1.0][..], 500.0));
 }
