@@ -111,7 +111,9 @@ impl Clock {
         let is_vague = by_nature || (self.is_time && name.to_lowercase().contains("stamp"));
         let since = epoch(times).filter(|_| self.unit == Written::Nothing && !self.is_counter);
         if let (Some((unit, seconds)), Some(&first)) = (since, times.first()) {
-            times.iter_mut().for_each(|time| *time = seconds * (*time - first));
+            for time in times.iter_mut() {
+                *time = seconds * (*time - first);
+            }
             return Ok(Sampling::Epoch { name: name.into(), unit, first });
         }
         match &self.unit {

@@ -96,6 +96,15 @@ impl Format {
         if is_catman(head) {
             return Err("a binary file of catman; export it as ASCII or to MATLAB");
         }
+        if head.get(257..262) == Some(b"ustar") {
+            return Err("a tar archive; unpack it");
+        }
+        if OF_OCTAVE.iter().any(|begin| head.starts_with(begin)) && has(b"\n# name: ") {
+            return Err("a text file of Octave; save it by save -v7");
+        }
+        if head.starts_with(b"IGOR") {
+            return Err("a text of Igor; save its waves as delimited text, with the time as one of them");
+        }
         // UTF-16 is text.
         if head.contains(&0) && utf_16(head).is_none() {
             return Err("neither text nor a binary format that is known; export its numbers as CSV");
@@ -135,6 +144,9 @@ const OTHERS: [(&[u8], &str); 24] = [
     (b"<!DOCTYPE", DOCUMENT),
     (b"<html", DOCUMENT),
 ];
+
+/// Beginnings of texts in which Octave has one array below another.
+const OF_OCTAVE: [&[u8]; 2] = [b"# Created by Octave", b"# Octave"];
 
 const ARCHIVE: &str = "a ZIP archive in an archive; unpack it";
 
@@ -246,6 +258,8 @@ mod tests {
             (b":WFMPRE:BYT_NR 2;ENC BIN;:CURVE #43000\0\x01", "Tektronix"),
             (b"PK\x03\x04\0\0word/document.xml", "ZIP"),
             (b"TDSm\x0E\0", "npTDMS"),
+            (b"# Created by Octave 8.4.0\n# name: t\n# type: matrix\n", "-v7"),
+            (b"IGOR\nWAVES/D\tv\nBEGIN\n", "delimited"),
             (b"%PDF-1.7", "PDF"),
             (b"PAR1\x15\0", "Parquet"),
             (b"<?xml version", "XML"),

@@ -1,4 +1,7 @@
-//! Times of day as text, with or without a date: `10:00:00.002`, `2024-05-02T10:00:00.002Z`, `5/2/2024 1:00:00 PM`.
+//! Times of day as text, with or without a date: `10:00:00.002`, `2024-05-02T10:00:00.002Z`, `5/2/2024 1:00:00 PM`,
+//! `20240502T100000.002Z`; and durations with their unit: `0.002 sec`.
+
+use crate::units::seconds_in;
 
 /// A time of day and the date as it is written; days are told apart by their text, whatever its order.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +19,8 @@ impl Stamp {
     pub(super) fn of(field: &[u8]) -> Option<Self> {
         const HOUR: f64 = 3600.0;
         let text = std::str::from_utf8(field).ok()?.trim();
-        let begin = text[..text.find(':')?].rfind(['T', ' ']).map_or(0, |at| at + 1);
+        let Some(colon) = text.find(':') else { return Self::basic(text).or_else(|| Self::duration(text)) };
+        let begin = text[..colon].rfind(['T', ' ']).map_or(0, |at| at + 1);
         let date = text[..begin].trim_end_matches(['T', ' ']);
         let is_date = |sign: char| sign.is_ascii_alphanumeric() || "-/., ".contains(sign);
         if begin > 0 && !(date.starts_with(|sign: char| sign.is_ascii_digit()) && date.chars().all(is_date)) {
@@ -54,6 +58,28 @@ impl Stamp {
             _ => 0.0,
         };
         Some(Self { date: date.to_owned(), seconds: seconds + noon })
+    }
+
+    /// The basic format of ISO 8601, which has no marks inside of date and time.
+    fn basic(text: &str) -> Option<Self> {
+        let (date, clock) = text.trim_end_matches('Z').split_once(['T', ' '])?;
+        let are_digits =
+            |text: &str, count: usize| text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
+        let (whole, fraction) = clock.split_once('.').unwrap_or((clock, ""));
+        if !are_digits(date, 8) || !are_digits(whole, 6) || !are_digits(fraction, fraction.len()) {
+            return None;
+        }
+        let clock = format!("{}:{}:{}.{fraction}", &whole[..2], &whole[2..4], &whole[4..]);
+        let stamp = Self::of(clock.as_bytes())?;
+        Some(Self { date: date.to_owned(), ..stamp })
+    }
+
+    /// A number and a unit of time behind a blank.
+    fn duration(text: &str) -> Option<Self> {
+        let (number, unit) = text.split_once(' ')?;
+        let number: f64 = number.parse().ok()?;
+        let seconds = number * seconds_in(unit).filter(|_| number.is_finite() && !unit.trim().is_empty())?;
+        Some(Self { date: String::new(), seconds })
     }
 }
 
@@ -101,12 +127,30 @@ mod tests {
             ("00:01.5", 1.5),
             ("10:30", 37_800.0),
             ("46085 10:00:00.5", 36_000.5),
+            ("20240502T100000.002Z", 36_000.002),
+            ("20240502 100000", 36_000.0),
+            ("0.002 sec", 0.002),
+            ("1.5 min", 90.0),
         ] {
             assert_eq!(Stamp::of(text.as_bytes()).map(|stamp| stamp.seconds), Some(seconds), "{text}");
         }
-        for text in
-            ["", ":", "1:", ":1", "a:b", "Start 10:00", "1:99", "x T1:2:3:4:5", "10:00:61", "1,5:2", "12 am", "é:1"]
-        {
+        for text in [
+            "",
+            ":",
+            "1:",
+            ":1",
+            "a:b",
+            "Start 10:00",
+            "1:99",
+            "x T1:2:3:4:5",
+            "10:00:61",
+            "1,5:2",
+            "12 am",
+            "é:1",
+            "20240502T10",
+            "2 m",
+            "NaN s",
+        ] {
             assert_eq!(Stamp::of(text.as_bytes()), None, "{text}");
         }
     }

@@ -45,6 +45,12 @@ impl Found {
     fn add(&mut self, path: &str, value: Value) {
         match value {
             Value::Object(object) => self.add_object(path, object),
+            Value::Array(list) if list.iter().any(holds_list) => {
+                for (index, channel) in list.into_iter().enumerate() {
+                    let name = channel.get("name").and_then(Value::as_str).map_or(index.to_string(), str::to_owned);
+                    self.add(&below(path, &name), channel);
+                }
+            }
             Value::Array(list) if list.iter().any(Value::is_object) => self.add_object(path, columns_of_objects(list)),
             Value::Array(list) if list.iter().any(Value::is_array) => self.add_object(path, columns_of_rows(list, &[])),
             Value::Array(list) => self.columns.push((path.to_owned(), list.iter().map(written).collect())),
@@ -59,6 +65,18 @@ impl Found {
             let table = columns_of_rows(rows.clone(), &names);
             return self.add_object(path, table);
         }
+        // Its table form has them beside a description.
+        if let Some(rows @ Value::Array(_)) = object.get("data").filter(|_| object.contains_key("schema")) {
+            return self.add(path, rows.clone());
+        }
+        // Rows by their numbers.
+        if object.len() > 1 && object.iter().all(|(key, row)| key.parse::<u64>().is_ok() && row.is_object()) {
+            let mut rows: Vec<(u64, Value)> =
+                object.into_iter().filter_map(|(key, row)| Some((key.parse().ok()?, row))).collect();
+            rows.sort_by_key(|(row, _)| *row);
+            let rows = rows.into_iter().map(|(_, row)| row).collect();
+            return self.add_object(path, columns_of_objects(rows));
+        }
         // A column by the numbers of its rows, as pandas writes one.
         let is_row =
             |(key, value): (&String, &Value)| key.parse::<u64>().is_ok() && !value.is_array() && !value.is_object();
@@ -68,9 +86,8 @@ impl Found {
             rows.sort_by_key(|(row, _)| *row);
             return self.columns.push((path.to_owned(), rows.into_iter().map(|(_, value)| value).collect()));
         }
-        let point = if path.is_empty() { "" } else { "." };
         for (key, value) in std::mem::take(&mut object) {
-            self.add(&format!("{path}{point}{key}"), value);
+            self.add(&below(path, &key), value);
         }
     }
 
@@ -79,7 +96,7 @@ impl Found {
         let own = Label::of(name);
         let scalar = |path: String| self.scalars.iter().find(|(other, _)| *other == path).map(|(_, text)| text);
         let parent = name.rsplit_once('.').map_or("", |(parent, _)| parent);
-        let beside = |key: &str| if parent.is_empty() { key.to_owned() } else { format!("{parent}.{key}") };
+        let beside = |key: &str| below(parent, key);
         let of_name = [format!("{name}_unit"), format!("{name}_units"), beside(&format!("units.{}", leaf(name)))];
         let of_all = ["unit", "units", "y_unit"].map(beside);
         let is_time = crate::files::clock::Clock::of(leaf(name)).is_time;
@@ -90,6 +107,16 @@ impl Found {
             None => name.to_owned(),
         }
     }
+}
+
+/// The path to a value of an object.
+fn below(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+/// True for an object with a list of its own, as a channel has.
+fn holds_list(value: &Value) -> bool {
+    value.as_object().is_some_and(|object| object.values().any(Value::is_array))
 }
 
 fn leaf(path: &str) -> &str {
@@ -148,6 +175,9 @@ mod tests {
             r#"{"time": {"0": 0.0, "2": 0.004, "1": 0.002}, "v [m/s]": {"0": 1.5, "1": 2.5, "2": -1}}"#,
             r#"{"columns": ["time", "v [m/s]"], "index": [0, 1, 2], "data": [[0.0, 1.5], [0.002, 2.5], [0.004, -1]]}"#,
             r#"{"t": ["10:00:00.000", "10:00:00.002", "10:00:00.004"], "units": {"v": "m/s"}, "v": [1.5, 2.5, -1]}"#,
+            r#"{"1": {"t": 0.002, "v [m/s]": 2.5}, "0": {"t": 0.0, "v [m/s]": 1.5}, "2": {"t": 0.004, "v [m/s]": -1}}"#,
+            r#"{"schema": {"fields": [{"name": "t"}]}, "data": [{"index": 0, "t": 0.0, "v [m/s]": 1.5}, {"index": 1, "t": 0.002, "v [m/s]": 2.5}, {"index": 2, "t": 0.004, "v [m/s]": -1}]}"#,
+            r#"{"channels": [{"name": "v", "unit": "m/s", "sampling_rate": 500, "data": [1.5, 2.5, -1]}]}"#,
             "[1.5, 2.5, -1]",
         ] {
             let reader = if text.starts_with("[1.5") { Reader::default().rate(500.0) } else { Reader::default() };
