@@ -8,8 +8,8 @@ use super::source::{code, crates, files, first_names, text};
 const ROOMS: &[(&str, &str)] = &[
     (
         "fmm-cli",
-        "figure files input output page backbone budget force frf batch posterior report identify scenario design \
-         lists simulate commands",
+        "figure files host answer input output page backbone budget force frf batch posterior report identify scenario \
+         design lists simulate commands schemas",
     ),
     (
         "fmm-fit",
@@ -20,7 +20,7 @@ const ROOMS: &[(&str, &str)] = &[
     ("fmm-friction", "law laws catalogue"),
     (
         "fmm-identify",
-        "error finding law linear_algebra machine candidate threads warning experiment quantities problem residuals \
+        "written error finding law linear_algebra machine candidate threads warning experiment quantities problem residuals \
          fit identification design friction_curve judgement posterior report",
     ),
     (

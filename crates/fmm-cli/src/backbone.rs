@@ -6,15 +6,17 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
+use crate::answer::{Answer, Detail, Document};
 use crate::figure::{Cells, Panel, Role, drawn, label};
+use crate::host::Host;
 use crate::input::Given;
-use crate::output::{Output, pair, print, while_busy};
+use crate::output::{Output, pair};
 use clap::Args;
 use fmm_frf::{Backbone, BackboneOptions, BackbonePoint, DecayMode, Suggestion, decay_modes};
 use fmm_identify::Experiment;
 use fmm_model::{Damping, Dual, Estimated, Oscillator, Scalar};
 use fmm_record::{Record, Spectrum};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 /// Shows the modes of a decay, and how frequency and damping of one go with its amplitude.
 #[derive(Debug, Args)]
@@ -25,15 +27,27 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "CYCLES")]
     cycles: Option<f64>,
     #[command(flatten)]
-    output: Output,
+    pub(crate) output: Output,
 }
 
 /// Points in the printed table at most.
 const ROWS: usize = 12;
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let input = arguments.given.read()?;
-    input.warn();
+/// A decay, its modes, and the backbone of one of them.
+pub(crate) struct Found {
+    origin: String,
+    remarks: Vec<String>,
+    decay: Experiment,
+    record: Record,
+    modes: Vec<DecayMode>,
+    backbone: Backbone,
+    suggestion: Suggestion,
+    /// Relative uncertainty of the clock.
+    clock: f64,
+}
+
+pub(crate) fn backbone(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    let input = arguments.given.read(host)?;
     let decay = Experiment::ring_down(&input.record, &arguments.given.preparation())?;
     let record = decay.record().equally_spaced().into_owned();
     let mut options = match arguments.given.mode {
@@ -44,29 +58,40 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         options = options.over(cycles)?;
     }
     let modes = decay_modes(&record);
-    let backbone = while_busy("backbone", || Backbone::of(&record, &options))??;
+    let backbone = host.while_busy("backbone", || Backbone::of(&record, &options))??;
     let suggestion = backbone.suggestion();
     let clock = arguments.given.choice.rate_u;
-    let picture = || drawn(&panels(&record, &backbone, &suggestion));
-    arguments.output.draw("backbone.svg", || Ok(vec![("backbone.svg", picture())]))?;
-    let report = if arguments.output.json {
-        format!("{:#}", document(&decay, &modes, &backbone, &suggestion, clock))
-    } else {
-        let summary = decay.summary();
+    Ok(Found { origin: input.origin, remarks: input.warnings, decay, record, modes, backbone, suggestion, clock })
+}
+
+impl Answer for Found {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        let summary = self.decay.summary();
         let mut lines = vec![
-            input.origin,
+            self.origin.clone(),
             format!("used from {:.4} s to {:.4} s; --from and --to say otherwise", summary.from, summary.to),
             String::new(),
-            text(&record, &modes, &backbone, &suggestion, clock),
+            text(&self.record, &self.modes, &self.backbone, &self.suggestion, self.clock),
         ];
-        let warnings = decay.warnings();
+        let warnings = self.decay.warnings();
         if !warnings.is_empty() {
             lines.extend([String::new(), "Warnings".to_owned()]);
             lines.extend(warnings.iter().map(|warning| format!("  - {warning}")));
         }
-        lines.join("\n")
-    };
-    print(report)
+        Ok(lines.join("\n"))
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("backbone-1", Content::of(self)).pretty()
+    }
+
+    fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        Ok(vec![("backbone.svg".to_owned(), drawn(&panels(&self.record, &self.backbone, &self.suggestion)))])
+    }
+
+    fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
 }
 
 fn text(record: &Record, modes: &[DecayMode], backbone: &Backbone, suggestion: &Suggestion, clock: f64) -> String {
@@ -141,65 +166,144 @@ fn stated(point: &BackbonePoint, clock: f64) -> [Option<Estimated>; 4] {
     })
 }
 
-fn document(
-    decay: &Experiment,
-    modes: &[DecayMode],
-    backbone: &Backbone,
-    suggestion: &Suggestion,
-    clock: f64,
-) -> Value {
-    let mode = |mode: &DecayMode| {
-        json!({
-            "frequency": mode.frequency,
-            "amplitude": mode.amplitude,
-            "share_of_energy": mode.share,
-            "above_noise": mode.above_noise,
-            "damping": mode.damping,
-            "steady": mode.is_steady(decay.record()),
-            "multiple": mode.multiple,
-        })
-    };
-    let point = |point: &BackbonePoint| {
-        let [ratio, quality, decrement, time] = stated(point, clock);
-        json!({
-            "time": point.time,
-            "amplitude_u": pair(point.amplitude),
-            "frequency_u": pair(clocked(point.frequency, clock)),
-            "damping_u": pair(clocked(point.damping, clock)),
-            "damping_ratio_u": ratio.map(pair),
-            "quality_factor_u": quality.map(pair),
-            "logarithmic_decrement_u": decrement.map(pair),
-            "time_constant_u": time.map(pair),
-        })
-    };
-    let damping: Vec<Value> = suggestion
-        .damping
-        .iter()
-        .map(|term| {
-            json!({
-                "term": format!("{:?}", term.kind).to_lowercase(),
-                "per_mass_u": pair(term.coefficient),
-                "share_of_energy_u": pair(term.share),
-            })
-        })
-        .collect();
-    json!({
-        "unit": decay.record().unit(),
-        "from": decay.summary().from,
-        "to": decay.summary().to,
-        "warnings": decay.warnings().iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "modes": modes.iter().map(mode).collect::<Vec<_>>(),
-        "window": backbone.window(),
-        "unit_of_amplitude": backbone.unit(),
-        "points": backbone.points().iter().map(point).collect::<Vec<_>>(),
-        "suggestion": {
-            "model": suggestion.model(),
-            "damping": damping,
-            "not_excluded": suggestion.others,
-            "falls": suggestion.falls,
-            "spring_u": suggestion.spring.iter().map(|term| pair(*term)).collect::<Vec<_>>(),
-        },
-    })
+/// Modes and backbone for programs; a list that ends in `_u` is a value and its standard uncertainty.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Content<'a> {
+    /// The file, the channel, what it was taken for, and how its sampling rate was found.
+    origin: &'a str,
+    /// Faults of the file.
+    remarks: &'a [String],
+    /// Unit of the record.
+    unit: &'a str,
+    /// Begin of the part that was used (s).
+    from: f64,
+    /// End of the part that was used (s).
+    to: f64,
+    warnings: Vec<String>,
+    modes: Vec<Mode>,
+    /// Length of a window (s).
+    window: f64,
+    unit_of_amplitude: &'a str,
+    points: Vec<Point>,
+    suggestion: Suggested,
+}
+
+/// A mode of the decay, the strongest first.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Mode {
+    /// Hz.
+    frequency: f64,
+    /// In the unit of the record.
+    amplitude: f64,
+    share_of_energy: f64,
+    /// Peak over the noise beside it (1).
+    above_noise: f64,
+    /// Damping per mass (1/s); none if it is not seen.
+    damping: Option<f64>,
+    /// True for a mode that does not decay.
+    steady: bool,
+    /// Of a stronger mode, if it is one.
+    multiple: Option<u32>,
+}
+
+/// One window along the decay.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Point {
+    /// Middle of the window (s).
+    time: f64,
+    /// In `unit_of_amplitude`.
+    amplitude_u: [f64; 2],
+    /// Hz.
+    frequency_u: [f64; 2],
+    /// Equivalent damping per mass (1/s).
+    damping_u: [f64; 2],
+    damping_ratio_u: Option<[f64; 2]>,
+    quality_factor_u: Option<[f64; 2]>,
+    logarithmic_decrement_u: Option<[f64; 2]>,
+    /// s.
+    time_constant_u: Option<[f64; 2]>,
+}
+
+/// Terms that explain the backbone.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Suggested {
+    /// Model for `--law` of identify.
+    model: String,
+    damping: Vec<DampingTerm>,
+    /// Models that the backbone does not exclude.
+    not_excluded: Vec<String>,
+    /// True if the damping falls with the amplitude, as under friction.
+    falls: bool,
+    /// Frequency at small amplitudes (Hz), and cubic and quintic part of the spring.
+    spring_u: Vec<[f64; 2]>,
+}
+
+/// A term of the damping.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct DampingTerm {
+    /// Name of the term.
+    term: String,
+    /// Coefficient per mass, in SI units.
+    per_mass_u: [f64; 2],
+    /// Share of the energy that is lost by it (1).
+    share_of_energy_u: [f64; 2],
+}
+
+impl<'a> Content<'a> {
+    fn of(found: &'a Found) -> Self {
+        let Found { decay, backbone, suggestion, clock, .. } = found;
+        let mode = |mode: &DecayMode| Mode {
+            frequency: mode.frequency,
+            amplitude: mode.amplitude,
+            share_of_energy: mode.share,
+            above_noise: mode.above_noise,
+            damping: mode.damping,
+            steady: mode.is_steady(decay.record()),
+            multiple: mode.multiple,
+        };
+        let point = |point: &BackbonePoint| {
+            let [ratio, quality, decrement, time] = stated(point, *clock).map(|stated| stated.map(pair));
+            Point {
+                time: point.time,
+                amplitude_u: pair(point.amplitude),
+                frequency_u: pair(clocked(point.frequency, *clock)),
+                damping_u: pair(clocked(point.damping, *clock)),
+                damping_ratio_u: ratio,
+                quality_factor_u: quality,
+                logarithmic_decrement_u: decrement,
+                time_constant_u: time,
+            }
+        };
+        let damping = suggestion.damping.iter().map(|term| DampingTerm {
+            term: format!("{:?}", term.kind).to_lowercase(),
+            per_mass_u: pair(term.coefficient),
+            share_of_energy_u: pair(term.share),
+        });
+        Self {
+            origin: &found.origin,
+            remarks: &found.remarks,
+            unit: decay.record().unit(),
+            from: decay.summary().from,
+            to: decay.summary().to,
+            warnings: decay.warnings().iter().map(ToString::to_string).collect(),
+            modes: found.modes.iter().map(mode).collect(),
+            window: backbone.window(),
+            unit_of_amplitude: backbone.unit(),
+            points: backbone.points().iter().map(point).collect(),
+            suggestion: Suggested {
+                model: suggestion.model(),
+                damping: damping.collect(),
+                not_excluded: suggestion.others.clone(),
+                falls: suggestion.falls,
+                spring_u: suggestion.spring.iter().map(|term| pair(*term)).collect(),
+            },
+        }
+    }
 }
 
 /// Spectrum, record with its envelope, spectrogram if there are several modes, frequency and damping against the

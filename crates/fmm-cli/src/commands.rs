@@ -8,8 +8,10 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
+use crate::answer::{Answer, Refusal};
 use crate::files::create_folder;
-use crate::output::print;
+use crate::host::Host;
+use crate::output::{Form, Output, Wanted, print, print_refusal};
 use crate::{backbone, batch, budget, design, force, frf, identify, lists, simulate};
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.
@@ -55,15 +57,13 @@ enum Command {
     Merge(batch::Merge),
     /// List the laws of friction with their parameters
     Laws {
-        /// Print one JSON document instead of text
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        form: Form,
     },
     /// List the file formats that are read
     Formats {
-        /// Print one JSON document instead of text
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        form: Form,
     },
     /// Print the completions for a shell
     Completions {
@@ -81,31 +81,33 @@ enum Command {
 /// input that is refused or a search that fails, and 2 for wrong usage.
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
-    let rest: Vec<_> = arguments.iter().skip(1).map(|argument| argument.to_string_lossy()).collect();
-    let command = format!("fmm {}", rest.join(" "));
+    let is_json = |argument: &OsString| argument.to_str().is_some_and(|a| a == "--json" || a.starts_with("--json="));
+    let wants_json = arguments.iter().take_while(|argument| *argument != "--").any(is_json);
+    // What cannot be printed cannot be told either.
+    let refuse = |refusal: &Refusal| drop(wants_json.then(|| print_refusal(refusal)));
+    let line = line(&arguments);
     let program = match Program::try_parse_from(arguments) {
         Ok(program) => program,
         Err(error) => {
+            if error.use_stderr() {
+                refuse(&Refusal::usage(&error));
+            }
             // There is nowhere left to say that this could not be printed.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let done = match &program.command {
-        Command::Identify(arguments) => identify::identify(arguments, &command),
-        Command::Compare(arguments) => identify::compare(arguments, &command),
-        Command::Force(arguments) => force::run(arguments),
-        Command::Backbone(arguments) => backbone::run(arguments),
-        Command::Simulate(arguments) => simulate::run(arguments),
-        Command::Frf(arguments) => frf::run(arguments),
-        Command::Budget(arguments) => budget::run(arguments),
-        Command::Design(arguments) => design::run(arguments),
-        Command::Batch(arguments) => batch::run(arguments),
-        Command::Merge(arguments) => batch::merge(arguments),
-        Command::Laws { json } => lists::laws(*json),
-        Command::Formats { json } => lists::formats(*json),
-        Command::Completions { shell } => completions(*shell),
-        Command::Manual { folder } => manual(folder),
+    let wanted = program.command.wanted();
+    let answer = wanted.check().and_then(|()| program.command.answer(&line, &Host::default()));
+    let done = match answer.and_then(|answer| {
+        answer.as_deref().map_or(Ok(()), |answer| wanted.give_out(answer))?;
+        Ok(answer)
+    }) {
+        Ok(answer) => answer.map_or(Ok(()), |answer| answer.verdict()),
+        Err(error) => {
+            refuse(&Refusal::of(&*error));
+            Err(error.to_string())
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -113,6 +115,85 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode
             eprintln!("error: {error}");
             ExitCode::FAILURE
         }
+    }
+}
+
+/// The answer of a command for a host that is no shell: `arguments` are those of [`run`], and nothing is printed. What
+/// says in which form a result is given out (`--json`, `--figures`, `--report`) has no effect.
+///
+/// ```
+/// use fmm_cli::{Answer, Detail, Host, answer};
+///
+/// let budget = r#"{"input": [{"name": "a", "unit": "m", "value": 2, "u": 0.1}],
+///                  "result": [{"name": "y", "unit": "m", "formula": "3*a"}]}"#;
+/// let host = Host::default().with_file("budget.json", budget.into());
+/// let answer: Box<dyn Answer> = answer(["fmm", "budget", "budget.json", "--trials", "10000"], &host)?;
+/// assert!(answer.document(Detail::Brief).unwrap().contains("\"estimate\": 6.0"));
+/// # Ok::<(), fmm_cli::Refusal>(())
+/// ```
+///
+/// # Errors
+/// What is wrong with the arguments or the input, in the words of the program.
+pub fn answer(
+    arguments: impl IntoIterator<Item = impl Into<OsString>>,
+    host: &Host<'_>,
+) -> Result<Box<dyn Answer>, Refusal> {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let line = line(&arguments);
+    let program = Program::try_parse_from(arguments).map_err(|error| Refusal::usage(&error))?;
+    let answer = program.command.answer(&line, host).map_err(|error| Refusal::of(&*error))?;
+    answer.ok_or_else(|| Refusal {
+        code: "usage",
+        message: "this command has no answer but files or scripts".to_owned(),
+        remedy: Some("run it in a shell".to_owned()),
+    })
+}
+
+/// What was typed.
+fn line(arguments: &[OsString]) -> String {
+    let rest: Vec<_> = arguments.iter().skip(1).map(|argument| argument.to_string_lossy()).collect();
+    format!("fmm {}", rest.join(" "))
+}
+
+impl Command {
+    /// What a command finds; `None` for one that writes by itself. `line` is what was typed.
+    fn answer(&self, line: &str, host: &Host<'_>) -> Result<Option<Box<dyn Answer>>, Box<dyn Error>> {
+        Ok(Some(match self {
+            Self::Identify(arguments) => Box::new(identify::identify(arguments, line, host)?),
+            Self::Compare(arguments) => Box::new(identify::compare(arguments, line, host)?),
+            Self::Force(arguments) => Box::new(force::force(arguments, host)?),
+            Self::Backbone(arguments) => Box::new(backbone::backbone(arguments, host)?),
+            Self::Simulate(arguments) => Box::new(simulate::simulate(arguments, host)?),
+            Self::Frf(arguments) => Box::new(frf::frf(arguments, host)?),
+            Self::Budget(arguments) => Box::new(budget::budget(arguments, host)?),
+            Self::Design(arguments) => Box::new(design::design(arguments, host)?),
+            Self::Batch(arguments) => batch::batch(arguments, host)?,
+            Self::Merge(arguments) => Box::new(batch::merge(arguments, host)?),
+            Self::Laws { .. } => Box::new(lists::laws()),
+            Self::Formats { .. } => Box::new(lists::formats()),
+            Self::Completions { shell } => return completions(*shell).map(|()| None),
+            Self::Manual { folder } => return manual(folder).map(|()| None),
+        }))
+    }
+
+    /// Forms in which the answer is wanted.
+    fn wanted(&self) -> Wanted {
+        let of_form = |form: &Form| Output { form: form.clone(), ..Output::default() };
+        let output = match self {
+            Self::Identify(arguments) | Self::Compare(arguments) => return arguments.wanted(),
+            Self::Force(force::Arguments { output, .. })
+            | Self::Backbone(backbone::Arguments { output, .. })
+            | Self::Simulate(simulate::Arguments { output, .. })
+            | Self::Frf(frf::Arguments { output, .. })
+            | Self::Design(design::Arguments { output, .. }) => output.clone(),
+            Self::Budget(budget::Arguments { form, .. })
+            | Self::Batch(batch::Arguments { form, .. })
+            | Self::Merge(batch::Merge { form, .. })
+            | Self::Laws { form }
+            | Self::Formats { form } => of_form(form),
+            Self::Completions { .. } | Self::Manual { .. } => Output::default(),
+        };
+        Wanted { output, report: None }
     }
 }
 

@@ -1,15 +1,9 @@
-//! Files: their text, the documents in them, and folders, with errors that name the path.
+//! Paths in sentences and documents, folders, and files that are written, with errors that name the path.
 
-use std::collections::BTreeMap;
-use std::error::Error;
 use std::fmt::Display;
-use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::Path;
 
-use fmm_record::{DataFile, Reader, RecordError};
 use serde::Serializer;
-use serde::de::DeserializeOwned;
 
 /// Puts the path of a file before an error.
 pub(crate) fn named<E: Display>(path: &Path) -> impl Fn(E) -> String {
@@ -52,64 +46,6 @@ pub(crate) mod exact {
             Written::Bytes(name) => name.into(),
         })
     }
-}
-
-/// Bytes of a file; those of a pipe, or of standard input where the path is `-`, are read once and kept.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    static KEPT: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
-    let cannot = |error| format!("cannot read {}: {error}", path.display());
-    if is_file(path) {
-        return std::fs::read(path).map_err(cannot);
-    }
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(bytes) = kept.get(path) {
-        return Ok(bytes.clone());
-    }
-    let mut bytes = Vec::new();
-    if path == Path::new("-") {
-        std::io::stdin().read_to_end(&mut bytes).map_err(cannot)?;
-    } else {
-        bytes = std::fs::read(path).map_err(cannot)?;
-    }
-    kept.insert(path.to_owned(), bytes.clone());
-    Ok(bytes)
-}
-
-/// True unless the path is one of a pipe or of standard input.
-fn is_file(path: &Path) -> bool {
-    path.is_file() || (!path.exists() && path != Path::new("-"))
-}
-
-/// A file of measured channels, which may come out of a pipe.
-pub(crate) fn open(reader: &Reader, path: &Path) -> Result<DataFile, RecordError> {
-    if is_file(path) {
-        return reader.open(path);
-    }
-    let read = bytes(path).map_err(|error| RecordError::Io {
-        what: format!("read {}", path.display()),
-        source: Arc::new(std::io::Error::other(error)),
-    });
-    reader.parse(read?)
-}
-
-/// Text of a file.
-pub(crate) fn text(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
-}
-
-/// Result of the content of a file, which is JSON if its name ends so, and TOML otherwise.
-pub(crate) fn document<F: DeserializeOwned, T>(
-    path: &Path,
-    of: impl FnOnce(F) -> Result<T, Box<dyn Error>>,
-) -> Result<T, Box<dyn Error>> {
-    let text = text(path)?;
-    let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-    let file = if is_json {
-        serde_json::from_str(&text).map_err(named(path))?
-    } else {
-        toml::from_str(&text).map_err(named(path))?
-    };
-    Ok(of(file).map_err(named(path))?)
 }
 
 /// Creates a folder unless it exists.

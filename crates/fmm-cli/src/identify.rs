@@ -5,14 +5,14 @@
 //! word in its name, or options; a guess is refused.
 
 use std::error::Error;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use crate::answer::{Answer, Detail, Document};
 use crate::figure::{drawn, histogram, label};
-use crate::files;
+use crate::host::Host;
 use crate::input::{Choice, DRIVE, Given, Question};
-use crate::output::{Output, print, print_json, spinner, while_busy};
+use crate::output::{Output, Wanted};
 use crate::posterior::Posterior;
 use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
@@ -54,6 +54,13 @@ pub(crate) struct Arguments {
     report: Option<PathBuf>,
 }
 
+impl Arguments {
+    /// Forms in which the answer is wanted.
+    pub(crate) fn wanted(&self) -> Wanted {
+        Wanted { output: self.output.clone(), report: self.report.clone() }
+    }
+}
+
 /// Two frequencies (Hz), the lower one first.
 fn band(text: &str) -> Result<(f64, f64), String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
@@ -64,16 +71,26 @@ fn band(text: &str) -> Result<(f64, f64), String> {
 }
 
 /// The force that was measured in `channel` of the file.
-fn measured(arguments: &Arguments, channel: &Column, quantity: Option<Quantity>) -> Result<Record, Box<dyn Error>> {
+fn measured(
+    arguments: &Arguments,
+    channel: &Column,
+    quantity: Option<Quantity>,
+    host: &Host<'_>,
+) -> Result<Record, Box<dyn Error>> {
     let file = arguments.given.file.as_ref().ok_or("the bundled record is one of a free vibration; give a file")?;
     let (time, rate) = (arguments.given.choice.time.clone(), arguments.given.choice.rate);
     let choice = Choice { channel: Some(channel.clone()), time, rate, quantity, is_drive: true, ..Choice::default() };
-    Ok(choice.read(file)?.record)
+    Ok(choice.read(file, host)?.record)
 }
 
 /// The experiment of the record, with its drive and its sensor.
-fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation) -> Result<Experiment, Box<dyn Error>> {
-    let force = |channel: &Column| measured(arguments, channel, Some(Quantity::Force));
+fn experiment(
+    arguments: &Arguments,
+    record: &Record,
+    preparation: &Preparation,
+    host: &Host<'_>,
+) -> Result<Experiment, Box<dyn Error>> {
+    let force = |channel: &Column| measured(arguments, channel, Some(Quantity::Force), host);
     let experiment = if let Some(channel) = &arguments.impact {
         let trial = ImpactTrial::prepare(&force(channel)?, record)?;
         match arguments.mobility {
@@ -83,97 +100,126 @@ fn experiment(arguments: &Arguments, record: &Record, preparation: &Preparation)
     } else if let Some(channel) = &arguments.force {
         Experiment::driven(record, Drive::force(&force(channel)?)?, preparation)?
     } else if let Some(channel) = &arguments.base {
-        Experiment::driven(record, Drive::base(&measured(arguments, channel, None)?)?, preparation)?
+        Experiment::driven(record, Drive::base(&measured(arguments, channel, None, host)?)?, preparation)?
     } else {
         Experiment::ring_down(record, preparation)?
     };
     arguments.question.seen(experiment)
 }
 
-/// Fits all candidates while a line on standard error shows how far they are.
-fn fitted(arguments: &Arguments, decay: &Experiment, candidates: &[Candidate]) -> Result<Comparison, Box<dyn Error>> {
-    let bar = spinner()?;
+/// Fits all candidates and tells how far they are.
+fn fitted(
+    arguments: &Arguments,
+    decay: &Experiment,
+    candidates: &[Candidate],
+    host: &Host<'_>,
+) -> Result<Comparison, Box<dyn Error>> {
     let samples = decay.summary().samples as f64;
-    let show = |law: &str, progress: &Progress<'_>| {
-        let rms = (progress.sum_of_squares() / samples).sqrt();
-        bar.set_message(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()));
-        ControlFlow::Continue(())
-    };
-    let comparison = arguments.question.answer(std::slice::from_ref(decay), candidates, show);
-    bar.finish_and_clear();
-    comparison
+    host.while_working(|tell| {
+        let show = |law: &str, progress: &Progress<'_>| {
+            let rms = (progress.sum_of_squares() / samples).sqrt();
+            tell(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()))
+        };
+        arguments.question.answer(std::slice::from_ref(decay), candidates, show)
+    })?
 }
 
-/// The record with the preferred fit, the decay of its amplitude, and the residuals.
-fn pictures(found: &Found) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
-    let pictures = Pictures::of(&found.decay, &found.comparison)?;
-    let unit = label("residual", found.decay.record().unit());
-    let curve = found.curve_panels().map(|panels| ("friction_curve.svg", drawn(&panels)));
-    let pictures = [
-        ("fit.svg", drawn(&pictures.fit)),
-        ("amplitude.svg", drawn(&pictures.amplitude)),
-        ("residuals.svg", histogram(&unit, "residuals", &pictures.residuals)),
-    ];
-    Ok(pictures.into_iter().chain(curve).collect())
-}
-
-/// Document for programs: the comparison, and the posterior if there is one.
+/// Document for programs: the comparison, and what was asked for beside it.
 #[derive(Serialize)]
-struct Document<'a> {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Content<'a> {
+    /// The file, the channel, what it was taken for, and how its sampling rate was found.
+    origin: &'a str,
+    /// Faults of the file.
+    remarks: &'a [String],
     #[serde(flatten)]
     comparison: &'a Comparison,
+    /// Friction over the speed, no law assumed; of `identify` alone.
     #[serde(skip_serializing_if = "Option::is_none")]
-    friction_curve: &'a Option<Curve>,
+    friction_curve: Option<&'a Curve>,
+    /// Posterior of the preferred law, by `--posterior`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    posterior: &'a Option<Posterior>,
+    #[cfg_attr(test, schemars(with = "Option<serde_json::Value>"))]
+    posterior: Option<&'a Posterior>,
+    /// Samples of the preferred law, by `--json=full`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fit: Option<Samples<'a>>,
 }
 
-/// Reads, prepares and fits the record; by a search unless there are `candidates`.
-fn found(arguments: &Arguments, candidates: &[Candidate]) -> Result<Found, Box<dyn Error>> {
-    let input = arguments.given.read_mode()?;
-    input.warn();
-    let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
-    let decay = experiment(arguments, &input.record, &preparation)?;
-    let comparison = fitted(arguments, &decay, candidates)?;
-    Ok(Found { origin: input.origin, decay, comparison, curve: None, posterior: None })
+/// The record that was fitted and its fit, sample by sample, in the unit of the record.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Samples<'a> {
+    law: &'a str,
+    unit: &'a str,
+    time_s: Vec<f64>,
+    measured: &'a [f64],
+    fitted: Vec<f64>,
+    /// Measured less fitted.
+    residuals: Vec<f64>,
 }
 
-/// Finds the law that explains a record, or the parameters of those that are named.
-pub(crate) fn identify(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
-    give_out(arguments, &arguments.question.candidates()?, true, command)
-}
-
-/// Compares the laws that are named, or else viscous, dry and both.
-pub(crate) fn compare(arguments: &Arguments, command: &str) -> Result<(), Box<dyn Error>> {
-    give_out(arguments, &arguments.question.compared()?, false, command)
-}
-
-/// `command` is what was typed.
-fn give_out(
-    arguments: &Arguments,
-    candidates: &[Candidate],
-    with_curve: bool,
-    command: &str,
-) -> Result<(), Box<dyn Error>> {
-    arguments.output.folder()?;
-    if let (true, Some(refusal)) = (arguments.posterior, Posterior::REFUSAL) {
-        return Err(refusal.into());
+impl Answer for Found {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        // The friction that the record shows, then the law that explains it.
+        let curve = self.curve.as_ref().map_or_else(String::new, |curve| format!("{}\n", curve.text()));
+        let posterior = self.posterior.as_ref().map_or_else(String::new, |posterior| format!("\n{}", posterior.text()));
+        Ok(format!("{}\n{curve}{}{posterior}", self.origin, self.comparison))
     }
-    if let Some(path) = &arguments.report {
-        files::require_writable(path)?;
-        let is_page =
-            path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|page| ending.eq_ignore_ascii_case(page)));
-        if !is_page {
-            let path = path.display();
-            let refusal = format!(
-                "--report writes a page of HTML, but {path} is called otherwise; give a name that ends in .html, which a \
-                 browser prints as PDF"
-            );
-            return Err(refusal.into());
-        }
+
+    fn document(&self, detail: Detail) -> Result<String, Box<dyn Error>> {
+        let record = self.decay.record();
+        let fit = match detail {
+            Detail::Brief => None,
+            Detail::Full => {
+                let fitted = self.fitted()?;
+                let residuals = record.values().iter().zip(&fitted).map(|(measured, fit)| measured - fit).collect();
+                let (law, unit) = (self.comparison.preferred().law(), record.unit());
+                let (time_s, measured) = (record.times().collect(), record.values());
+                Some(Samples { law, unit, time_s, measured, fitted, residuals })
+            }
+        };
+        let content = Content {
+            origin: &self.origin,
+            remarks: &self.remarks,
+            comparison: &self.comparison,
+            friction_curve: self.curve.as_ref(),
+            posterior: self.posterior.as_ref(),
+            fit,
+        };
+        Document::new("identify-1", content).pretty()
     }
+
+    /// The record with the preferred fit, the decay of its amplitude, the residuals, and the friction curve.
+    fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        let pictures = Pictures::of(self)?;
+        let unit = label("residual", self.decay.record().unit());
+        let curve = self.curve_panels().map(|panels| ("friction_curve.svg", drawn(&panels)));
+        let pictures = [
+            ("fit.svg", drawn(&pictures.fit)),
+            ("amplitude.svg", drawn(&pictures.amplitude)),
+            ("residuals.svg", histogram(&unit, "residuals", &pictures.residuals)),
+        ];
+        Ok(pictures.into_iter().chain(curve).map(|(name, svg)| (name.to_owned(), svg)).collect())
+    }
+
+    fn page(&self) -> Result<Option<String>, Box<dyn Error>> {
+        report::document(self).map(Some)
+    }
+
+    fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
+    fn verdict(&self) -> Result<(), String> {
+        self.failure.clone().map_or(Ok(()), Err)
+    }
+}
+
+/// Finds the law that explains a record, or the parameters of those that are named; `command` is what was typed.
+pub(crate) fn identify(arguments: &Arguments, command: &str, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     let begun = Instant::now();
-    let mut found = found(arguments, candidates)?;
+    let mut found = found(arguments, &arguments.question.candidates()?, command, host)?;
     let curve = || {
         if arguments.question.is_over(begun) {
             return Curve::Missing { missing: "the time limit is over".to_owned() };
@@ -183,47 +229,54 @@ fn give_out(
             Err(error) => Curve::Missing { missing: error.to_string() },
         }
     };
-    found.curve = if with_curve { Some(while_busy("friction over speed", curve)?) } else { None };
-    let posterior = || Posterior::of(found.comparison.preferred(), &found.decay);
-    let posterior = if arguments.posterior { while_busy("posterior", posterior)?.map(Some) } else { Ok(None) };
-    // What was found is given out without one as well.
-    let failed = match posterior {
-        Ok(posterior) => {
-            found.posterior = posterior;
-            None
-        }
-        Err(error) => Some(error),
-    };
-    if arguments.output.json {
-        print_json(&Document {
-            comparison: &found.comparison,
-            friction_curve: &found.curve,
-            posterior: &found.posterior,
-        })?;
-    } else {
-        let report = found.comparison.to_string();
-        // The friction that the record shows, then the law that explains it.
-        let curve = found.curve.as_ref().map_or_else(String::new, |curve| format!("{}\n", curve.text()));
-        print(format_args!("{}\n{curve}{report}", found.origin))?;
-        if let Some(posterior) = &found.posterior {
-            print(posterior.text())?;
+    found.curve = Some(host.while_busy("friction over speed", curve)?);
+    with_posterior(found, arguments, host)
+}
+
+/// Compares the laws that are named, or else viscous, dry and both.
+pub(crate) fn compare(arguments: &Arguments, command: &str, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    let found = found(arguments, &arguments.question.compared()?, command, host)?;
+    with_posterior(found, arguments, host)
+}
+
+/// Reads, prepares and fits the record; by a search unless there are `candidates`.
+fn found(
+    arguments: &Arguments,
+    candidates: &[Candidate],
+    command: &str,
+    host: &Host<'_>,
+) -> Result<Found, Box<dyn Error>> {
+    if let (true, Some(refusal)) = (arguments.posterior, Posterior::REFUSAL) {
+        return Err(refusal.into());
+    }
+    let input = arguments.given.read_mode(host)?;
+    let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
+    let decay = experiment(arguments, &input.record, &preparation, host)?;
+    let comparison = fitted(arguments, &decay, candidates, host)?;
+    let bytes = arguments.given.bytes(host)?;
+    Ok(Found {
+        origin: input.origin,
+        remarks: input.warnings,
+        decay,
+        comparison,
+        curve: None,
+        posterior: None,
+        failure: None,
+        command: command.to_owned(),
+        sha256: report::digest(&bytes),
+    })
+}
+
+/// The same with the posterior, if it is asked for; what was found is given out without one as well.
+fn with_posterior(mut found: Found, arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    if arguments.posterior {
+        let posterior = || Posterior::of(found.comparison.preferred(), &found.decay);
+        match host.while_busy("posterior", posterior)? {
+            Ok(posterior) => found.posterior = Some(posterior),
+            Err(error) => found.failure = Some(error.to_string()),
         }
     }
-    arguments.output.draw(
-        if found.curve_panels().is_some() {
-            "{fit,amplitude,residuals,friction_curve}.svg"
-        } else {
-            "{fit,amplitude,residuals}.svg"
-        },
-        || pictures(&found),
-    )?;
-    if let Some(path) = &arguments.report {
-        let bytes = arguments.given.bytes()?;
-        let page = while_busy("report", || report::document(&found, &bytes, command))??;
-        std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
-        eprintln!("report: {}", path.display());
-    }
-    failed.map_or(Ok(()), Err)
+    Ok(found)
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 //! A thin face of the other crates: it reads arguments and files, shows how far it is, and writes text, JSON, figures
 //! and pages; all mathematics is theirs. `fmm --help` lists the commands.
 //!
-//! [`run`] is the program as a function, and [`figure`] the one place that draws.
+//! [`run`] is the program as a function, [`answer`] the same for a [`Host`] that is no shell, and [`figure`] the one
+//! place that draws.
 //!
 //! ```
 //! # use std::process::ExitCode;
@@ -11,6 +12,7 @@
 //! assert_eq!(fmm_cli::run(["fmm", "formats"]), ExitCode::SUCCESS);
 //! ```
 
+mod answer;
 mod backbone;
 mod batch;
 mod budget;
@@ -20,6 +22,7 @@ pub mod figure;
 mod files;
 mod force;
 mod frf;
+mod host;
 mod identify;
 mod input;
 mod lists;
@@ -28,6 +31,10 @@ pub mod page;
 mod posterior;
 mod report;
 mod scenario;
+#[cfg(test)]
+mod schemas;
 mod simulate;
 
-pub use commands::run;
+pub use answer::{Answer, Detail, Refusal};
+pub use commands::{answer, run};
+pub use host::Host;

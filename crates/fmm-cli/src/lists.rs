@@ -2,9 +2,9 @@
 
 use std::error::Error;
 
-use serde_json::json;
+use serde::Serialize;
 
-use crate::output::{print, print_json};
+use crate::answer::{Answer, Detail, Document};
 use crate::scenario;
 use crate::scenario::{Entry, Slot};
 
@@ -26,21 +26,53 @@ fn text() -> String {
     lines.join("\n")
 }
 
-/// The laws as a list of names and parameters.
-fn document() -> serde_json::Value {
-    let law = |entry: &Entry| {
-        let parameters = (entry.slots)().into_iter().map(|slot| {
-            let Slot { name, symbol, unit, default, .. } = slot;
-            json!({ "name": name, "symbol": symbol, "unit": unit, "default": default, "keys": slot.keys() })
-        });
-        json!({ "name": entry.name, "parameters": parameters.collect::<Vec<_>>() })
-    };
-    scenario::laws().iter().map(law).collect()
+/// The laws with their parameters.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Laws {
+    laws: Vec<Law>,
 }
 
-/// Lists the laws with their parameters.
-pub(crate) fn laws(json: bool) -> Result<(), Box<dyn Error>> {
-    if json { print_json(&document()) } else { print(text()) }
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Law {
+    /// Name for `--law`.
+    name: &'static str,
+    parameters: Vec<Parameter>,
+}
+
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Parameter {
+    name: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    /// Value of a scenario that gives none.
+    default: Option<f64>,
+    /// Names by which a file may call it.
+    keys: Vec<String>,
+}
+
+pub(crate) fn laws() -> Laws {
+    let law = |entry: Entry| {
+        let parameter = |slot: Slot| {
+            let keys = slot.keys();
+            let Slot { name, symbol, unit, default, .. } = slot;
+            Parameter { name, symbol, unit, default, keys }
+        };
+        Law { name: entry.name, parameters: (entry.slots)().into_iter().map(parameter).collect() }
+    };
+    Laws { laws: scenario::laws().into_iter().map(law).collect() }
+}
+
+impl Answer for Laws {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(text())
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("laws-1", self).pretty()
+    }
 }
 
 /// Names of the formats and what they are.
@@ -58,16 +90,37 @@ const FORMATS: [(&str, &str); 8] = [
     ("universal", "Universal File, data sets 58 and 58b (.uff, .unv, .58)"),
 ];
 
-/// Lists the formats.
-pub(crate) fn formats(json: bool) -> Result<(), Box<dyn Error>> {
-    if json {
-        let formats = FORMATS.map(|(name, files)| json!({ "name": name, "files": files }));
-        return print_json(&formats);
+/// The file formats that are read.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Formats {
+    formats: Vec<Format>,
+}
+
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Format {
+    name: &'static str,
+    /// Files of this format, in words.
+    files: &'static str,
+}
+
+pub(crate) fn formats() -> Formats {
+    Formats { formats: FORMATS.map(|(name, files)| Format { name, files }).into() }
+}
+
+impl Answer for Formats {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        let lines: Vec<String> =
+            self.formats.iter().map(|Format { name, files }| format!("{name:<10} {files}\n")).collect();
+        Ok(format!(
+            "A format is told by what a file begins with, whatever its name; gzip may compress it, and of a ZIP archive the largest file is read.\n\n{}\n\
+             A channel is chosen by its name, its number or its quantity; `fmm identify FILE` says what was found in a file and what must be said.",
+            lines.concat()
+        ))
     }
-    let lines = FORMATS.map(|(name, files)| format!("{name:<10} {files}\n"));
-    print(format_args!(
-        "A format is told by what a file begins with, whatever its name; gzip may compress it, and of a ZIP archive the largest file is read.\n\n{}\n\
-         A channel is chosen by its name, its number or its quantity; `fmm identify FILE` says what was found in a file and what must be said.",
-        lines.concat()
-    ))
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("formats-1", self).pretty()
+    }
 }

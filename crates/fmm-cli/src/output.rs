@@ -1,47 +1,87 @@
-//! Standard output, folders of figures, and progress.
+//! Standard output and folders of figures.
 
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::path::PathBuf;
 
 use clap::Args;
 use fmm_model::{Estimated, Rounded};
-use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
 
-use crate::files::create_folder;
+use crate::answer::{Answer, Detail, Document, Refusal, Refused};
+use crate::files::{self, create_folder};
 
-/// Form of a result: text or JSON, with or without figures.
-#[derive(Debug, Args)]
-pub(crate) struct Output {
-    /// Print one JSON document instead of text
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Write SVG figures into this folder
-    #[arg(long, value_name = "DIR")]
-    figures: Option<PathBuf>,
+/// Form of a result: text or JSON.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct Form {
+    /// Print one JSON document instead of text, also of an error; with =full, that of a fit holds measured and fitted
+    /// curve and residuals
+    #[arg(long, value_name = "DETAIL", num_args = 0..=1, require_equals = true, default_missing_value = "brief")]
+    pub(crate) json: Option<Detail>,
 }
 
-impl Output {
-    /// The folder for figures, which exists, if they are asked for.
-    pub(crate) fn folder(&self) -> Result<Option<&Path>, Box<dyn Error>> {
-        self.figures.as_deref().map(create_folder).transpose()?;
-        Ok(self.figures.as_deref())
+/// Form of a result, with or without figures.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct Output {
+    #[command(flatten)]
+    pub(crate) form: Form,
+    /// Write SVG figures into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
+}
+
+/// Forms in which a result is wanted.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Wanted {
+    pub(crate) output: Output,
+    /// Page of HTML.
+    pub(crate) report: Option<PathBuf>,
+}
+
+impl Wanted {
+    /// Refuses folders and files that cannot be written, before work is done for them.
+    pub(crate) fn check(&self) -> Result<(), Box<dyn Error>> {
+        self.output.figures.as_deref().map(create_folder).transpose()?;
+        let Some(path) = &self.report else { return Ok(()) };
+        files::require_writable(path)?;
+        let is_page =
+            path.extension().is_some_and(|ending| ["html", "htm"].iter().any(|page| ending.eq_ignore_ascii_case(page)));
+        if is_page {
+            return Ok(());
+        }
+        let path = path.display();
+        Err(format!(
+            "--report writes a page of HTML, but {path} is called otherwise; give a name that ends in .html, which a \
+             browser prints as PDF"
+        )
+        .into())
     }
 
-    /// Writes pictures (name of the file and SVG), if they are asked for, and says so by their `names`.
-    pub(crate) fn draw<N: AsRef<Path>>(
-        &self,
-        names: &str,
-        pictures: impl FnOnce() -> Result<Vec<(N, String)>, Box<dyn Error>>,
-    ) -> Result<(), Box<dyn Error>> {
-        let Some(folder) = self.folder()? else { return Ok(()) };
-        for (name, svg) in pictures()? {
-            std::fs::write(folder.join(name), svg)?;
+    /// Prints an answer, and writes its figures and its page.
+    pub(crate) fn give_out(&self, answer: &dyn Answer) -> Result<(), Box<dyn Error>> {
+        for remark in answer.remarks() {
+            eprintln!("warning: {remark}");
         }
-        eprintln!("figures: {}", folder.join(names).display());
+        if let Some(written) = answer.written() {
+            eprintln!("{written}");
+        }
+        print(match self.output.form.json {
+            Some(detail) => answer.document(detail)?,
+            None => answer.text()?,
+        })?;
+        if let Some(folder) = &self.output.figures {
+            let pictures = answer.pictures()?;
+            for (name, svg) in &pictures {
+                std::fs::write(folder.join(name), svg)?;
+            }
+            let names: Vec<&str> = pictures.iter().map(|(name, _)| name.trim_end_matches(".svg")).collect();
+            let names = if let [name] = names[..] { name.to_owned() } else { format!("{{{}}}", names.join(",")) };
+            eprintln!("figures: {}", folder.join(format!("{names}.svg")).display());
+        }
+        if let (Some(path), Some(page)) = (&self.report, self.report.as_ref().map_or(Ok(None), |_| answer.page())?) {
+            std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+            eprintln!("report: {}", path.display());
+        }
         Ok(())
     }
 }
@@ -56,30 +96,14 @@ pub(crate) fn print(result: impl Display) -> Result<(), Box<dyn Error>> {
     }
 }
 
+/// Prints the document of a refusal.
+pub(crate) fn print_refusal(refusal: &Refusal) -> Result<(), Box<dyn Error>> {
+    print(Document::new("error-1", Refused { error: refusal }).pretty()?)
+}
+
 /// Value and standard uncertainty for a document.
 pub(crate) fn pair(estimated: Estimated) -> [f64; 2] {
     [estimated.value, estimated.uncertainty]
-}
-
-/// Prints a document of JSON.
-pub(crate) fn print_json(document: &impl Serialize) -> Result<(), Box<dyn Error>> {
-    print(serde_json::to_string_pretty(document)?)
-}
-
-/// Result of `work` of unknown length, while a line on standard error says `what` it is.
-pub(crate) fn while_busy<T>(what: &str, work: impl FnOnce() -> T) -> Result<T, Box<dyn Error>> {
-    let bar = spinner()?;
-    bar.set_message(format!("{what} …"));
-    let done = work();
-    bar.finish_and_clear();
-    Ok(done)
-}
-
-/// A line on standard error that turns while work of unknown length is done.
-pub(crate) fn spinner() -> Result<ProgressBar, Box<dyn Error>> {
-    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}")?);
-    bar.enable_steady_tick(Duration::from_millis(100));
-    Ok(bar)
 }
 
 /// An uncertainty to the places that one of its size deserves.

@@ -32,8 +32,9 @@ fn codes_tell_what_is_found_refused_and_wrong() {
 #[test]
 fn lists_are_documents_too() {
     for (command, name) in [("laws", "coulomb"), ("formats", "matlab")] {
-        let list: serde_json::Value = serde_json::from_slice(&fmm(&[command, "--json"]).stdout).unwrap();
-        let names: Vec<&str> = list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect();
+        let document: serde_json::Value = serde_json::from_slice(&fmm(&[command, "--json"]).stdout).unwrap();
+        let names: Vec<&str> =
+            document[command].as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect();
         assert!(names.contains(&name), "{names:?}");
         let text = String::from_utf8(fmm(&[command]).stdout).unwrap();
         assert!(names.iter().all(|name| text.contains(name)), "{text}");
@@ -57,7 +58,58 @@ fn every_command_prints_one_document() {
         let output = fmm_in(&examples, arguments);
         let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         assert!(output.status.success() && document.get(key).is_some(), "{arguments}: {document}");
+        assert_eq!(document["version"], env!("CARGO_PKG_VERSION"), "{arguments}");
+        let command = arguments.split(' ').next().unwrap().replace("compare", "identify");
+        assert_eq!(document["schema"], format!("{command}-1"));
     }
+}
+
+/// Under `--json` standard output is one document, of an error too; the code stays.
+#[test]
+fn errors_are_documents_too() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    for (arguments, status, code, remedy) in [
+        ("identify no_such_file.csv --json", 1, "unreadable", None),
+        ("identify data/bicycle_wheel_radial_gyro.csv --json", 1, "unclear", Some("--unit")),
+        ("identify data/flexure/run_1.csv --law coulom --json", 1, "name", None),
+        ("identify data/flexure/run_1.csv --stifness 1 --json", 2, "usage", Some("--stiffness")),
+        ("budget budgets/stiffness.toml --trials 1 --json", 2, "usage", None),
+    ] {
+        let output = fmm_in(&examples, arguments);
+        let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error = &document["error"];
+        assert_eq!(
+            (output.status.code(), error["code"].as_str()),
+            (Some(status), Some(code)),
+            "{arguments}: {document}"
+        );
+        assert!(error["message"].as_str().is_some_and(|message| message.len() > 10), "{document}");
+        let told = error["remedy"].as_str().unwrap_or_default();
+        assert!(remedy.is_none_or(|remedy| told.contains(remedy)), "{arguments}: {document}");
+        assert!(!output.stderr.is_empty(), "a person is told as well");
+    }
+}
+
+/// A full document has the samples of the fit, and the residuals are what is left.
+#[test]
+fn a_full_document_has_the_samples() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let document =
+        |line: &str| -> serde_json::Value { serde_json::from_slice(&fmm_in(&examples, line).stdout).unwrap() };
+    let found = document("identify data/flexure/run_1.csv --law coulomb --json=full");
+    let series = |key: &str| -> Vec<f64> {
+        found["fit"][key].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+    };
+    let [times, measured, fitted, residuals] = ["time_s", "measured", "fitted", "residuals"].map(series);
+    assert_eq!(times.len(), found["preparation"]["samples"].as_u64().unwrap() as usize);
+    assert!((0..times.len()).all(|i| residuals[i] == measured[i] - fitted[i]));
+    let forces = "force data/damper_1Hz_36lb_1amplitude.csv --average 0.05 --model coulomb --json";
+    assert!(document(forces)["models"][0].get("fits").is_none());
+    let full = document(&format!("{forces}=full"));
+    assert_eq!(
+        full["models"][0]["fits"][0]["residuals"].as_array().unwrap().len() as u64,
+        full["samples"].as_u64().unwrap()
+    );
 }
 
 #[test]

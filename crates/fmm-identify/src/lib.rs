@@ -94,6 +94,7 @@
 //!   threads of the current pool, with the same result.
 //! * `sampler`: the posterior of an identification, its intervals beside the others, and predictive checks.
 //! * `serde`: findings, comparisons and reports serialise.
+//! * `schemars`: so do their JSON schemas.
 //!
 //! # Neighbours
 //!
@@ -123,6 +124,8 @@ mod report;
 mod residuals;
 mod threads;
 mod warning;
+#[cfg(feature = "serde")]
+mod written;
 
 pub use candidate::Candidate;
 pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};

@@ -66,6 +66,7 @@
 //! | `std` | on by default: elementary functions of the standard library |
 //! | `libm` | those of the crate libm where `std` is off, as on a controller; an allocator is needed all the same |
 //! | `simd` | `widest`: work for the widest vectors of the processor, by the crate pulp |
+//! | `schemars` | their JSON schemas |
 //! | `serde` | intervals as text |
 //! | `student` | coverage factors and quantiles of Student's t, by statrs |
 

@@ -77,6 +77,7 @@
 //!
 //! * `formula`: models as text, `Formula`.
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
+//! * `schemars`: JSON schemas of budgets and statements.
 //! * `serde`: [`PartialRun`]s, failures, intervals, histograms, statements and budgets as text.
 //!
 //! # Neighbours

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::{EXCLUDE, FILE, Manifest, exclusion, listed};
 use super::sheet::Sheet;
 use crate::files::{self, create_folder, named};
+use crate::host::Host;
 use crate::input::{DRIVES, Given, Input, Question};
 
 /// The records of a campaign, in their order.
@@ -76,8 +77,9 @@ impl Campaign {
         path: &Path,
         options: Vec<String>,
         group: Option<String>,
+        host: &Host<'_>,
     ) -> Result<Self, Box<dyn Error>> {
-        let manifest = Manifest::read(path)?;
+        let manifest = Manifest::read(path, host)?;
         let command = RecordOptions::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
@@ -162,7 +164,8 @@ impl Campaign {
     /// The campaign whose list is in `folder`.
     pub(crate) fn read(folder: &Path) -> Result<Self, Box<dyn Error>> {
         let path = folder.join(LIST);
-        let text = files::text(&path).map_err(|error| format!("{} holds no campaign: {error}", folder.display()))?;
+        let text =
+            Host::default().text(&path).map_err(|error| format!("{} holds no campaign: {error}", folder.display()))?;
         Ok(serde_json::from_str(&text).map_err(named(&path))?)
     }
 }
@@ -191,8 +194,8 @@ impl RecordOptions {
     }
 
     /// The record as it was read, and as it is fitted.
-    pub(crate) fn prepared(&self) -> Result<(Input, Experiment), Box<dyn Error>> {
-        let input = self.given.read_mode()?;
+    pub(crate) fn prepared(&self, host: &Host<'_>) -> Result<(Input, Experiment), Box<dyn Error>> {
+        let input = self.given.read_mode(host)?;
         let preparation = self.given.preparation().gain_uncertainty(self.question.scale_u);
         let experiment = self.question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
         Ok((input, experiment))

@@ -29,6 +29,7 @@ pub(crate) const FRICTION: [&str; 3] = ["mu", "friction_force", "friction_per_ma
 
 /// A measure of friction against something that differs between records.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Dependence {
     pub(crate) quantity: String,
     pub(crate) unit: String,
@@ -47,6 +48,7 @@ pub(crate) struct Dependence {
 
 /// intercept + slope · x, with an effect of each record beside it.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Line {
     pub(crate) intercept: f64,
     pub(crate) intercept_u: f64,

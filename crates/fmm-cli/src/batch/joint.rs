@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::campaign::Campaign;
 use super::row::{Found, Row, Told, told};
+use crate::host::Host;
 use crate::input::Question;
 
 /// The usual law with its viscous part as damping of the machine.
@@ -17,6 +18,7 @@ const OF_MACHINE: &str = "coulomb + linear";
 
 /// Findings of all records as one.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Together {
     pub(crate) law: String,
     pub(crate) records: usize,
@@ -34,6 +36,7 @@ impl Together {
         campaign: &Campaign,
         rows: &[Row],
         with_doubtful: bool,
+        host: &Host<'_>,
         show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Self, Box<dyn Error>> {
         let counted = || (0..rows.len()).filter(|index| rows[*index].counts(with_doubtful));
@@ -41,7 +44,7 @@ impl Together {
         let (mut questions, mut experiments) = (Vec::new(), Vec::new());
         for index in counted() {
             let record = campaign.record(index)?;
-            let (_, experiment) = record.prepared()?;
+            let (_, experiment) = record.prepared(host)?;
             questions.push((record.question, rows[index].file.display().to_string()));
             experiments.push(experiment);
         }

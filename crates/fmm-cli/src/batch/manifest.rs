@@ -6,7 +6,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::sheet::Sheet;
-use crate::files::{self, named};
+use crate::files::named;
+use crate::host::Host;
 
 /// Content of a manifest, from CSV or TOML.
 #[derive(Debug)]
@@ -47,8 +48,8 @@ pub(super) fn exclusion(cell: &str) -> Option<String> {
 
 impl Manifest {
     /// Reads TOML if the name or the beginning of the file looks so, and CSV otherwise.
-    pub(super) fn read(path: &Path) -> Result<Self, String> {
-        let text = files::text(path)?;
+    pub(super) fn read(path: &Path, host: &Host<'_>) -> Result<Self, String> {
+        let text = host.text(path)?;
         let read = if is_toml(path, &text) { Self::of_toml(&text) } else { Self::of_csv(&text) };
         let manifest = read.and_then(Self::with_columns_once).map_err(named(path))?;
         if manifest.records.is_empty() {

@@ -16,22 +16,25 @@ mod summary;
 mod table;
 
 use std::error::Error;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fmm_fit::Progress;
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
+use serde::Serialize;
 
+use crate::answer::{Answer, Detail, Document};
 use crate::files;
-use crate::output::{print, spinner};
+use crate::host::Host;
+use crate::output::Form;
 use campaign::Campaign;
 pub(crate) use dependence::FRICTION;
 use joint::Together;
 use row::{Outcome, Row};
 use summary::Summary;
+#[cfg(test)]
+pub(crate) use table::Content;
 
 /// Identifies many records.
 #[derive(Debug, Args)]
@@ -66,9 +69,8 @@ pub(crate) struct Arguments {
     /// Records at a time; as many as there are processors unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Print one JSON document instead of the tables
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pub(crate) form: Form,
     /// After two dashes, options of `fmm identify` for all records, as in -- --unit m/s --mass 10.391
     #[arg(last = true, value_name = "OPTION")]
     options: Vec<String>,
@@ -81,9 +83,8 @@ pub(crate) struct Merge {
     folder: PathBuf,
     #[command(flatten)]
     asked: Asked,
-    /// Print one JSON document instead of the tables
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pub(crate) form: Form,
 }
 
 /// Requests to all records together, on which no row depends.
@@ -107,28 +108,31 @@ impl Asked {
         self.against.iter().try_for_each(|column| campaign.require_column(column))
     }
 
-    fn summary(&self, campaign: &Campaign, rows: &[Row]) -> Result<Summary, Box<dyn Error>> {
+    fn summary(&self, campaign: &Campaign, rows: &[Row], host: &Host<'_>) -> Result<Summary, Box<dyn Error>> {
         let alone = Summary::of(campaign, rows, self, None);
         if !self.joint {
             return Ok(alone);
         }
         let joint = match alone.against_joint() {
             Some(why) => Outcome::Refused(why),
-            None => joint(campaign, rows, self)?,
+            None => joint(campaign, rows, self, host)?,
         };
         Ok(Summary::of(campaign, rows, self, Some(joint)))
     }
 }
 
-/// Fits all records together while a line on standard error shows how far that is.
-fn joint(campaign: &Campaign, rows: &[Row], asked: &Asked) -> Result<Outcome<Together>, Box<dyn Error>> {
-    let bar = spinner()?;
-    let show = |law: &str, progress: &Progress<'_>| {
-        bar.set_message(format!("joint fit by {law}: step {}", progress.iterations()));
-        ControlFlow::Continue(())
-    };
-    let joint = Together::of(campaign, rows, asked.count_doubtful, show);
-    bar.finish_and_clear();
+/// Fits all records together and tells how far that is.
+fn joint(
+    campaign: &Campaign,
+    rows: &[Row],
+    asked: &Asked,
+    host: &Host<'_>,
+) -> Result<Outcome<Together>, Box<dyn Error>> {
+    let joint = host.while_working(|tell| {
+        let show =
+            |law: &str, progress: &Progress<'_>| tell(format!("joint fit by {law}: step {}", progress.iterations()));
+        Together::of(campaign, rows, asked.count_doubtful, host, show)
+    })?;
     Ok(joint.into())
 }
 
@@ -143,13 +147,64 @@ fn shard(text: &str) -> Result<(usize, usize), String> {
     if (1..=all).contains(&part) { Ok((part, all)) } else { Err(refused()) }
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+/// Rows of a campaign, and what they say together.
+pub(crate) struct Found {
+    campaign: Campaign,
+    rows: Vec<Row>,
+    summary: Summary,
+    written: Option<String>,
+}
+
+impl Answer for Found {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(table::text(&self.rows, &self.summary))
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        table::document(&self.rows, &self.summary)
+    }
+
+    fn page(&self) -> Result<Option<String>, Box<dyn Error>> {
+        Ok(Some(page::page(&self.campaign, &self.rows, &self.summary)))
+    }
+
+    fn written(&self) -> Option<String> {
+        self.written.clone()
+    }
+
+    fn verdict(&self) -> Result<(), String> {
+        if self.summary.found == 0 {
+            return Err(format!("none of {} records was identified; the reasons are in their rows", self.rows.len()));
+        }
+        Ok(())
+    }
+}
+
+/// A part of a campaign that is done, of which nothing can be said yet.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Part {
+    /// Which part is done, and what comes next.
+    done: String,
+}
+
+impl Answer for Part {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(self.done.clone())
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("part-1", self).pretty()
+    }
+}
+
+pub(crate) fn batch(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn Answer>, Box<dyn Error>> {
     let mut options = arguments.options.clone();
     if !arguments.search && !options.iter().any(|option| option == "--law" || option.starts_with("--law=")) {
         options.extend(["--law".to_owned(), LAW.to_owned()]);
     }
     let campaign = match (&arguments.manifest, &arguments.group) {
-        (Some(manifest), group) => Campaign::of_manifest(manifest, options, group.clone())?,
+        (Some(manifest), group) => Campaign::of_manifest(manifest, options, group.clone(), host)?,
         (None, Some(group)) => {
             let what = "a manifest says which records belong together, and none is given; list them in one, and give it by --manifest";
             return Err(format!("--group {group}: {what}").into());
@@ -161,8 +216,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let jobs = arguments.jobs.map_or(0, usize::from);
     let Some(folder) = &arguments.out else {
         let all: Vec<usize> = (0..campaign.entries.len()).collect();
-        let rows = Row::without_copies(in_parallel(&all, jobs, |index| Ok(Row::of(&campaign, index)))?);
-        return give_out(&rows, &arguments.asked.summary(&campaign, &rows)?, arguments.json);
+        let rows = in_parallel(&all, jobs, host, |index| Ok(Row::of(&campaign, index, host)))?;
+        let rows = Row::without_copies(rows);
+        let summary = arguments.asked.summary(&campaign, &rows, host)?;
+        return Ok(Box::new(Found { campaign, rows, summary, written: None }));
     };
     campaign.keep(folder)?;
     let entries = &campaign.entries;
@@ -171,21 +228,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         .step_by(parts)
         .filter(|index| Row::is_due(folder, *index, &entries[*index]))
         .collect();
-    in_parallel(&waiting, jobs, |index| Row::of(&campaign, index).write(folder, index))?;
+    in_parallel(&waiting, jobs, host, |index| Row::of(&campaign, index, host).write(folder, index))?;
     if arguments.shard.is_some() {
-        eprintln!("part {part} of {parts} is done; `fmm merge {}` puts all together", folder.display());
-        return Ok(());
+        let folder = folder.display();
+        let done = format!("part {part} of {parts} is done; `fmm merge {folder}` puts all together");
+        return Ok(Box::new(Part { done }));
     }
-    put_together(folder, &campaign, &arguments.asked, arguments.json)
+    Ok(Box::new(put_together(folder, campaign, &arguments.asked, host)?))
 }
 
-pub(crate) fn merge(arguments: &Merge) -> Result<(), Box<dyn Error>> {
+pub(crate) fn merge(arguments: &Merge, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     let campaign = Campaign::read(&arguments.folder)?;
     arguments.asked.check(&campaign)?;
-    put_together(&arguments.folder, &campaign, &arguments.asked, arguments.json)
+    put_together(&arguments.folder, campaign, &arguments.asked, host)
 }
 
-fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -> Result<(), Box<dyn Error>> {
+fn put_together(folder: &Path, campaign: Campaign, asked: &Asked, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     let entries = campaign.entries.iter().enumerate();
     let rows: Vec<Option<Row>> = entries.map(|(index, entry)| Row::read(folder, index, entry)).collect();
     let missing = rows.iter().filter(|row| row.is_none()).count();
@@ -197,37 +255,34 @@ fn put_together(folder: &Path, campaign: &Campaign, asked: &Asked, json: bool) -
         .into());
     }
     let rows = Row::without_copies(rows.into_iter().flatten().collect());
-    let summary = asked.summary(campaign, &rows)?;
+    let summary = asked.summary(&campaign, &rows, host)?;
+    let written = Some(format!("written: {}", folder.join("campaign.{csv,json,html}").display()));
+    let found = Found { campaign, rows, summary, written };
     for (name, text) in [
-        ("campaign.csv", table::csv(campaign, &rows)?),
-        ("campaign.json", table::document(&rows, &summary)?),
-        ("campaign.html", page::page(campaign, &rows, &summary)),
+        ("campaign.csv", table::csv(&found.campaign, &found.rows)?),
+        ("campaign.json", found.document(Detail::Brief)?),
+        ("campaign.html", page::page(&found.campaign, &found.rows, &found.summary)),
     ] {
         files::write(&folder.join(name), &text)?;
     }
-    eprintln!("written: {}", folder.join("campaign.{csv,json,html}").display());
-    give_out(&rows, &summary, json)
-}
-
-fn give_out(rows: &[Row], summary: &Summary, json: bool) -> Result<(), Box<dyn Error>> {
-    if json { print(table::document(rows, summary)?) } else { print(table::text(rows, summary)) }?;
-    if summary.found == 0 {
-        return Err(format!("none of {} records was identified; the reasons are in their rows", rows.len()).into());
-    }
-    Ok(())
+    Ok(found)
 }
 
 /// Results of all `tasks` in their order, `jobs` at a time, with a bar of progress; the first error ends it.
 fn in_parallel<T: Send>(
     tasks: &[usize],
     jobs: usize,
+    host: &Host<'_>,
     work: impl Fn(usize) -> Result<T, String> + Sync,
 ) -> Result<Vec<T>, Box<dyn Error>> {
-    let bar = ProgressBar::new(tasks.len() as u64)
-        .with_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} records, {eta} left")?);
+    let count = tasks.len();
+    let bar = host.tasks(count as u64, "{wide_bar} {pos} of {len} records, {eta} left")?;
     let one = |task: &usize| {
         let done = work(*task);
         bar.inc(1);
+        if host.is_watched() && host.told(&bar, format!("{} of {count} records", bar.position())).is_break() {
+            return Err("stopped before the end".to_owned());
+        }
         done
     };
     let pool = ThreadPoolBuilder::new().num_threads(jobs).build()?;

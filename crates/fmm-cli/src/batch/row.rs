@@ -15,9 +15,11 @@ use sha2::{Digest, Sha256};
 
 use super::campaign::{Campaign, Entry, RecordOptions};
 use crate::files;
+use crate::host::Host;
 
 /// Result of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Row {
     #[serde(serialize_with = "files::shown")]
     pub(crate) file: PathBuf,
@@ -32,6 +34,7 @@ pub(crate) struct Row {
 
 /// Findings, or the reason of a refusal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Outcome<T> {
     Found(T),
@@ -56,6 +59,7 @@ impl<T> From<Result<T, Box<dyn Error>>> for Outcome<T> {
 
 /// Findings of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Found {
     /// The channel and what it was taken for.
     pub(crate) origin: String,
@@ -82,6 +86,7 @@ pub(crate) struct Found {
 
 /// A quantity of the machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Told {
     pub(crate) name: String,
     pub(crate) unit: String,
@@ -96,6 +101,7 @@ pub(crate) struct Told {
 
 /// A part of an uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Part {
     pub(crate) source: String,
     /// Contribution to the uncertainty, in the unit of the quantity.
@@ -104,6 +110,7 @@ pub(crate) struct Part {
 
 /// An input that was stated with an uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Stated {
     /// The source of uncertainty that it is.
     pub(crate) source: String,
@@ -114,10 +121,10 @@ pub(crate) struct Stated {
 
 impl Row {
     /// Identifies the record of this index.
-    pub(crate) fn of(campaign: &Campaign, index: usize) -> Self {
+    pub(crate) fn of(campaign: &Campaign, index: usize, host: &Host<'_>) -> Self {
         let entry = &campaign.entries[index];
         let outcome = match &entry.excluded {
-            None => campaign.record(index).and_then(|record| found(&record)).into(),
+            None => campaign.record(index).and_then(|record| found(&record, host)).into(),
             Some(reason) if reason.is_empty() => Outcome::Refused("left out by the manifest".to_owned()),
             Some(reason) => Outcome::Refused(format!("left out by the manifest: {reason}")),
         };
@@ -199,8 +206,8 @@ pub(crate) fn quantities<'a>(rows: &[&'a Row]) -> Vec<(&'a str, &'a str)> {
 }
 
 /// Identifies one record.
-fn found(record: &RecordOptions) -> Result<Found, Box<dyn Error>> {
-    let (input, decay) = record.prepared()?;
+fn found(record: &RecordOptions, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    let (input, decay) = record.prepared(host)?;
     let candidates = record.question.candidates()?;
     let comparison =
         record.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;

@@ -10,6 +10,7 @@ use super::row::{Row, Stated, Told};
 
 /// Contribution of an input that records share to the uncertainty of a consensus.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SharedPart {
     pub(crate) input: Stated,
     /// Records that share it.

@@ -17,6 +17,7 @@ use crate::figure::ends;
 
 /// Entries of a manifest under `[sheet]`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Sheet {
     /// By key of [`FIELDS`].
     given: BTreeMap<String, String>,
@@ -61,6 +62,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
 
 /// A field of the sheet as it is printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Field {
     pub(crate) part: &'static str,
     pub(crate) name: String,

@@ -18,6 +18,7 @@ const LEVEL: f64 = 0.95;
 
 /// Each quantity that two records or more show.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Summary {
     pub(crate) records: usize,
     pub(crate) found: usize,
@@ -40,6 +41,7 @@ pub(crate) struct Summary {
 
 /// A record that the manifest leaves out.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Excluded {
     pub(crate) file: String,
     pub(crate) reason: String,
@@ -47,6 +49,7 @@ pub(crate) struct Excluded {
 
 /// A record that lies farther from the others than chance and uncertainties explain.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Outlying {
     pub(crate) file: String,
     /// Distance from the consensus of the others, over it (1).
@@ -57,6 +60,7 @@ pub(crate) struct Outlying {
 
 /// A record whose fit is doubted.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Doubted {
     pub(crate) file: String,
     pub(crate) doubts: Vec<String>,
@@ -64,6 +68,7 @@ pub(crate) struct Doubted {
 
 /// A quantity of a campaign.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Quantity {
     pub(crate) name: String,
     pub(crate) unit: String,
@@ -103,6 +108,7 @@ pub(crate) struct Quantity {
 
 /// Repeatability and reproducibility by the groups of a column.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ByGroup {
     pub(crate) groups: Vec<String>,
     pub(crate) means: Vec<f64>,

@@ -4,12 +4,14 @@ use std::error::Error;
 use std::fmt::Write;
 
 use fmm_model::Rounded;
+use serde::Serialize;
 
 use super::campaign::Campaign;
 use super::dependence::FRICTION;
 use super::row::{Found, Outcome, Row, Told, in_unit, quantities};
 use super::sheet::Field;
 use super::summary::{ByGroup, Outlying, Quantity, Summary};
+use crate::answer::Document;
 use crate::output::of_size;
 
 /// One line for each record, with all digits.
@@ -53,9 +55,17 @@ pub(crate) fn csv(campaign: &Campaign, rows: &[Row]) -> Result<String, Box<dyn E
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
+/// A campaign for programs.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Content<'a> {
+    summary: &'a Summary,
+    records: &'a [Row],
+}
+
 /// Everything, for other programs.
 pub(crate) fn document(rows: &[Row], summary: &Summary) -> Result<String, Box<dyn Error>> {
-    Ok(serde_json::to_string_pretty(&serde_json::json!({ "summary": summary, "records": rows }))?)
+    Document::new("batch-1", Content { summary, records: rows }).pretty()
 }
 
 pub(super) fn quantity_text(quantity: &Quantity, value: f64, u: f64) -> String {

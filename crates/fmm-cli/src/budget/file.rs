@@ -46,6 +46,7 @@ struct InputEntry {
 
 /// The correlation of two quantities.
 #[derive(Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Correlation {
     #[serde(deserialize_with = "two_names")]

@@ -16,8 +16,9 @@ use fmm_uq::{
 };
 use serde::Serialize;
 
-use crate::files;
-use crate::output::{print, print_json, while_busy};
+use crate::answer::{Answer, Detail, Document};
+use crate::host::Host;
+use crate::output::Form;
 use file::{Correlation, Measurement};
 
 /// States the uncertainty of a result.
@@ -34,9 +35,8 @@ pub(crate) struct Arguments {
     /// Seed of the trials
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Print one JSON document instead of text
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pub(crate) form: Form,
 }
 
 pub(crate) const HELP: &str = include_str!("help.txt");
@@ -46,7 +46,8 @@ const DIGITS: u32 = 2;
 
 /// One result: what follows by derivatives, what by trials, and whether the first may stand for the second.
 #[derive(Serialize)]
-struct Answer {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Stated {
     formula: String,
     budget: Budget,
     /// None where u is zero or its degrees of freedom are not defined.
@@ -63,16 +64,26 @@ struct Answer {
 
 /// All results, and how they go together.
 #[derive(Serialize)]
-struct Answers {
-    results: Vec<Answer>,
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Answers {
+    results: Vec<Stated>,
     correlations: Vec<Correlation>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let measurement = files::document(&arguments.file, Measurement::of)?;
+pub(crate) fn budget(arguments: &Arguments, host: &Host<'_>) -> Result<Answers, Box<dyn Error>> {
+    let measurement = host.document(&arguments.file, Measurement::of)?;
     let trials = (arguments.trials, arguments.seed);
-    let answers = while_busy("trials", || answers(&measurement, arguments.level, trials))??;
-    if arguments.json { print_json(&answers) } else { print(text(&answers).trim_end()) }
+    host.while_busy("trials", || answers(&measurement, arguments.level, trials))?
+}
+
+impl Answer for Answers {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(text(self).trim_end().to_owned())
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("budget-1", self).pretty()
+    }
 }
 
 fn answers(measurement: &Measurement, level: f64, (trials, seed): (u64, u64)) -> Result<Answers, Box<dyn Error>> {
@@ -96,7 +107,7 @@ fn answers(measurement: &Measurement, level: f64, (trials, seed): (u64, u64)) ->
             validate(expanded.interval(), interval, u, digits).is_ok_and(|validation| validation.is_valid())
         };
         let validated = |expanded: Expanded| (1..=DIGITS).rev().find(|digits| agree(&expanded, *digits));
-        answers.push(Answer {
+        answers.push(Stated {
             formula: result.formula.text().to_owned(),
             statement: budget.statement(level).ok(),
             validated_digits: expanded.and_then(validated).unwrap_or(0),
@@ -153,7 +164,7 @@ fn text(answers: &Answers) -> String {
 }
 
 /// The interval of the trials of a result that has no standard deviation.
-fn interval(answer: &Answer) -> String {
+fn interval(answer: &Stated) -> String {
     let Interval { low, high, level, .. } = answer.interval;
     let (budget, percent) = (&answer.budget, 100.0 * level);
     let limits = Rounded::new(budget.estimate(), Some(budget.standard_uncertainty())).interval(low, high);
@@ -299,7 +310,7 @@ formula = "l_s + d - l_s*(δα*θ + α_s*δθ)"
                 )
             };
             std::fs::write(&path, file).unwrap();
-            let read = files::document(&path, Measurement::of);
+            let read = Host::default().document(&path, Measurement::of);
             std::fs::remove_file(&path).unwrap();
             read.unwrap().inputs.as_slice()[0].standard_uncertainty()
         };

@@ -1,6 +1,6 @@
 //! Pictures of a plan: the uncertainty against each number that the tests vary.
 
-use super::Answer;
+use super::Choice;
 use super::candidates::unit;
 use crate::figure::{Panel, Role, drawn, label};
 
@@ -8,7 +8,7 @@ use crate::figure::{Panel, Role, drawn, label};
 const IN_SIGHT: f64 = 20.0;
 
 /// One panel for each number of which the tests have several: every test, the best at each value, and those chosen.
-pub(super) fn picture(answer: &Answer) -> Option<(&'static str, String)> {
+pub(super) fn picture(answer: &Choice) -> Option<(String, String)> {
     let least = answer.tests.iter().filter_map(|test| test.u).fold(f64::INFINITY, f64::min);
     let mut names: Vec<&'static str> = answer.tests.iter().flat_map(|test| test.settings.keys().copied()).collect();
     names.sort_unstable();
@@ -39,5 +39,5 @@ pub(super) fn picture(answer: &Answer) -> Option<(&'static str, String)> {
         Some(panel)
     };
     let panels: Vec<Panel> = names.into_iter().filter_map(panel).collect();
-    (!panels.is_empty()).then(|| ("design.svg", drawn(&panels)))
+    (!panels.is_empty()).then(|| ("design.svg".to_owned(), drawn(&panels)))
 }

@@ -17,8 +17,9 @@ use clap::Args;
 use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
 use serde::Serialize;
 
-use crate::files;
-use crate::output::{Output, print, print_json, while_busy};
+use crate::answer::{Answer, Detail, Document};
+use crate::host::Host;
+use crate::output::Output;
 use campaign::Campaign;
 use file::{Robust, Wanted};
 
@@ -33,13 +34,14 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "campaign.json", conflicts_with = "file")]
     from: Option<PathBuf>,
     #[command(flatten)]
-    output: Output,
+    pub(crate) output: Output,
 }
 
 pub(crate) const HELP: &str = include_str!("help.txt");
 
 /// One test.
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Row {
     name: String,
     settings: BTreeMap<&'static str, f64>,
@@ -51,6 +53,7 @@ struct Row {
 
 /// A set of tests and what it would find.
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Set {
     /// Places of tests with how often each is made.
     chosen: Vec<(usize, usize)>,
@@ -67,7 +70,8 @@ struct Set {
 }
 
 #[derive(Serialize)]
-struct Answer {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Choice {
     aim: String,
     tests: Vec<Row>,
     /// The test that tells most by itself, and the one that tells most for its cost.
@@ -76,30 +80,41 @@ struct Answer {
     best: Set,
     /// u of the same number of repeats of the single best test.
     repeats: Option<f64>,
+    /// The plan that a campaign led to, and what more of its records would tell.
+    #[serde(skip)]
+    told: Option<[String; 2]>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let plan = || -> Result<_, Box<dyn Error>> {
+pub(crate) fn design(arguments: &Arguments, host: &Host<'_>) -> Result<Choice, Box<dyn Error>> {
+    host.while_busy("comparing tests", || {
         if let Some(path) = &arguments.file {
-            return Ok((files::document(path, |file| answer(Wanted::of(file)?))?, None));
+            return host.document(path, |file| answer(Wanted::of(file)?));
         }
         let path =
             arguments.from.as_deref().ok_or("give the file of a plan, or --from with the document of a campaign")?;
-        files::document(path, |campaign: Campaign| {
+        host.document(path, |campaign: Campaign| {
             let (plan, more) = campaign.plan()?;
             let answer = answer(Wanted::of(toml::from_str(&plan)?)?)?;
-            Ok((answer, Some([plan, more])))
+            Ok(Choice { told: Some([plan, more]), ..answer })
         })
-    };
-    let (answer, told) = while_busy("comparing tests", plan)??;
-    arguments.output.draw("design.svg", || Ok(figures::picture(&answer).into_iter().collect()))?;
-    if arguments.output.json {
-        return print_json(&answer);
+    })?
+}
+
+impl Answer for Choice {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        let told = self.told.as_ref().map_or_else(String::new, |[plan, more]| {
+            format!("the plan, to be changed and given as a file:\n\n{plan}\n{more}\n\n")
+        });
+        Ok(format!("{told}{}", text(self).trim_end()))
     }
-    let told = told.map_or_else(String::new, |[plan, more]| {
-        format!("the plan, to be changed and given as a file:\n\n{plan}\n{more}\n\n")
-    });
-    print(format_args!("{told}{}", text(&answer).trim_end()))
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("design-1", self).pretty()
+    }
+
+    fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        Ok(figures::picture(self).into_iter().collect())
+    }
 }
 
 /// The plan that follows from the document of a campaign, after it was carried out, and what more records would tell.
@@ -110,7 +125,7 @@ pub(crate) fn of_campaign(document: &str) -> Result<(String, String), Box<dyn Er
     Ok(told)
 }
 
-fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {
+fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
     let Wanted { guess, tests, settings, choose } = wanted;
     let aim = choose.aim();
     let samples = choose.robust.map(|_| guess.draws(choose.draws, choose.seed));
@@ -171,7 +186,7 @@ fn answer(wanted: Wanted) -> Result<Answer, Box<dyn Error>> {
         told: plan.sentences_of_each(best.measurements())?,
         text: prediction.to_string(),
     };
-    Ok(Answer { aim: choose.aim, tests: rows, single, for_its_cost, best, repeats })
+    Ok(Choice { aim: choose.aim, tests: rows, single, for_its_cost, best, repeats, told: None })
 }
 
 fn percent(u: Option<f64>) -> String {
@@ -182,9 +197,9 @@ fn percent(u: Option<f64>) -> String {
     }
 }
 
-fn text(answer: &Answer) -> String {
+fn text(answer: &Choice) -> String {
     let mut text = String::new();
-    let Answer { aim, tests, best, .. } = answer;
+    let Choice { aim, tests, best, .. } = answer;
     let width = tests.iter().map(|test| test.name.chars().count()).max().unwrap_or(0);
     // Writing to a string does not fail.
     let _ = writeln!(text, "u of {aim}, relative, by each test alone:");

@@ -158,6 +158,7 @@ impl Role {
 
 /// Names of the columns that were used, and sentences about them.
 #[derive(Debug, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Columns {
     /// `None` for equal steps by an option, or for steady states without a time.
     pub(super) time: Option<String>,

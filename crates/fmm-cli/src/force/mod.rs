@@ -5,24 +5,28 @@
 //! it was not fitted.
 
 mod columns;
+mod document;
 mod source;
 
 use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use crate::answer::{Answer, Detail, Document};
 use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
+use crate::host::Host;
 use crate::input::{Held, limit};
-use crate::output::{Output, of_size, pair, print, print_json, while_busy};
+use crate::output::{Output, of_size};
 use clap::Args;
 use columns::Columns;
+pub(crate) use document::Content;
+use fmm_fit::Progress;
 use fmm_identify::{
     Candidate, Comparison, ForceLoop, ForceRecord, Identification, IdentifyError, Inquiry, Machine, Onset, SpeedBin,
     Validation, Warning,
 };
 use fmm_model::Rounded;
-use serde_json::{Value, json};
 use source::{Source, Table};
 
 /// Fits friction to a measured force along a measured motion.
@@ -54,7 +58,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
     #[command(flatten)]
-    output: Output,
+    pub(crate) output: Output,
 }
 
 /// Models that are fitted unless others are given.
@@ -76,81 +80,101 @@ fn models_for(records: &[ForceRecord]) -> [&'static str; 2] {
     }
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let read = |files: &[PathBuf]| -> Result<(Vec<ForceRecord>, Vec<Columns>), Box<dyn Error>> {
-        let tables = files.iter().map(|file| arguments.source.read(file)).collect::<Result<Vec<_>, _>>()?;
-        Ok(tables.into_iter().map(|Table { record, columns }| (record, columns)).unzip())
+/// A record that was read from a file.
+struct Read {
+    file: PathBuf,
+    record: ForceRecord,
+    columns: Columns,
+}
+
+/// Records, and the models that were fitted to them.
+pub(crate) struct Found {
+    fitted: Vec<Read>,
+    /// Records to which nothing was fitted.
+    others: Vec<Read>,
+    compared: Comparison,
+    /// Sentences about columns and motions, with their files.
+    remarks: Vec<String>,
+}
+
+pub(crate) fn force(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    let read = |file: &PathBuf| -> Result<Read, Box<dyn Error>> {
+        let Table { record, columns } = arguments.source.read(file, host)?;
+        Ok(Read { file: file.clone(), record, columns })
     };
-    let ((records, columns), (others, columns_of_others)) = (read(&arguments.files)?, read(&arguments.validate)?);
+    let read = |files: &[PathBuf]| files.iter().map(read).collect::<Result<Vec<Read>, _>>();
+    let (fitted, others) = (read(&arguments.files)?, read(&arguments.validate)?);
+    let records = |read: &[Read]| read.iter().map(|read| read.record.clone()).collect::<Vec<_>>();
+    let (records, records_of_others) = (records(&fitted), records(&others));
     let described = described(arguments, &records)?;
-    let compared = compared(arguments, &records, &others, &described)?;
-    let found = compared.identifications();
-    let picture = |(found, number): (&Identification, usize)| {
-        Ok((format!("force_{number}.svg"), drawn(&panels(&records[0], found)?)))
-    };
-    arguments.output.draw("force_*.svg", || found.iter().zip(1..).map(picture).collect())?;
-    let validations = |number: usize| compared.validations().get(number).map_or(&[][..], Vec::as_slice);
-    let all_files = || arguments.files.iter().chain(&arguments.validate);
-    let all_columns = || columns.iter().chain(&columns_of_others);
-    let driven = arguments.validate.iter().zip(&others).filter_map(|(file, record)| {
-        let (friction, unit) = (record.driving_friction()?, record.force_unit().to_owned());
-        Some(named(file)(Warning::DrivesMotion { friction, unit }))
+    let compared = compared(arguments, &records, &records_of_others, &described, host)?;
+    let of_columns = fitted.iter().chain(&others).flat_map(|read| read.columns.remarks.iter().map(named(&read.file)));
+    let driven = others.iter().filter_map(|read| {
+        let (friction, unit) = (read.record.driving_friction()?, read.record.force_unit().to_owned());
+        Some(named(&read.file)(Warning::DrivesMotion { friction, unit }))
     });
-    let remarks: Vec<String> = all_files()
-        .zip(all_columns())
-        .flat_map(|(file, columns)| columns.remarks.iter().map(|remark| named(file)(remark)))
-        .chain(driven)
-        .collect();
-    if arguments.output.json {
-        let models = found.iter().zip(0..).map(|(found, i)| document(found, &arguments.validate, validations(i)));
-        let columns =
-            |(file, columns): (&PathBuf, &Columns)| json!({ "file": file.display().to_string(), "columns": columns });
-        let warnings: Vec<String> =
-            remarks.into_iter().chain(compared.warnings().iter().map(ToString::to_string)).collect();
-        let document = json!({
-            "columns": all_files().zip(all_columns()).map(columns).collect::<Vec<_>>(),
-            "samples": records.iter().map(ForceRecord::len).sum::<usize>(),
-            "friction_over_speed": records.iter().map(speeds).collect::<Vec<_>>(),
-            "loops": records.iter().map(loops).collect::<Vec<_>>(),
-            "onsets": records.iter().map(onsets).collect::<Vec<_>>(),
-            "models": models.collect::<Vec<_>>(),
-            "preferred": compared.preferred().law(),
-            "preferred_by": if others.is_empty() { "fit" } else { "prediction" },
-            "is_decided": compared.is_decided(),
-            "warnings": warnings,
-        });
-        return print_json(&document);
+    let remarks = of_columns.chain(driven).collect();
+    Ok(Found { fitted, others, compared, remarks })
+}
+
+impl Found {
+    fn all(&self) -> impl Iterator<Item = &Read> {
+        self.fitted.iter().chain(&self.others)
     }
-    let mut out = String::new();
-    for (file, columns) in all_files().zip(all_columns()).skip(records.len()) {
-        writeln!(out, "{}, not fitted: {columns}", file.display())?;
+
+    /// The models with how they predict the records to which they were not fitted.
+    fn models(&self) -> impl Iterator<Item = (&Identification, &[Validation])> {
+        let validations = self.compared.validations();
+        let of_model = move |(number, found)| (found, validations.get(number).map_or(&[][..], Vec::as_slice));
+        self.compared.identifications().iter().enumerate().map(of_model)
     }
-    for ((file, record), columns) in arguments.files.iter().zip(&records).zip(&columns) {
-        let unit = record.force_unit();
-        writeln!(out, "{}: {} samples, forces in {unit}", file.display(), record.len())?;
-        writeln!(out, "  columns: {columns}")?;
-        for line in without_a_law(record) {
-            writeln!(out, "  {line}")?;
+}
+
+impl Answer for Found {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        let mut out = String::new();
+        for Read { file, columns, .. } in &self.others {
+            writeln!(out, "{}, not fitted: {columns}", file.display())?;
         }
-    }
-    for remark in remarks {
-        writeln!(out, "note: {remark}")?;
-    }
-    for (found, number) in found.iter().zip(0..) {
-        writeln!(out, "\n{found}")?;
-        for ((file, record), said) in arguments.validate.iter().zip(&others).zip(validations(number)) {
-            let (rms, unit) = (said.rms, record.force_unit());
-            let share = said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
-            writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
-            if let Some(warning) = said.warning(found.law()) {
-                writeln!(out, "  - {warning}")?;
+        for Read { file, record, columns } in &self.fitted {
+            let unit = record.force_unit();
+            writeln!(out, "{}: {} samples, forces in {unit}", file.display(), record.len())?;
+            writeln!(out, "  columns: {columns}")?;
+            for line in without_a_law(record) {
+                writeln!(out, "  {line}")?;
             }
         }
+        for remark in &self.remarks {
+            writeln!(out, "note: {remark}")?;
+        }
+        for (found, validations) in self.models() {
+            writeln!(out, "\n{found}")?;
+            for (Read { file, record, .. }, said) in self.others.iter().zip(validations) {
+                let (rms, unit) = (said.rms, record.force_unit());
+                let share =
+                    said.share().map_or_else(String::new, |share| format!(", {:.1} % of the force", 100.0 * share));
+                writeln!(out, "  not fitted: {}: rms {rms:.4e} {unit}{share}", file.display())?;
+                if let Some(warning) = said.warning(found.law()) {
+                    writeln!(out, "  - {warning}")?;
+                }
+            }
+        }
+        if self.compared.identifications().len() > 1 {
+            writeln!(out, "\n{}", self.compared)?;
+        }
+        Ok(out.trim_end().to_owned())
     }
-    if described.len() > 1 {
-        writeln!(out, "\n{compared}")?;
+
+    fn document(&self, detail: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("force-1", Content::of(self, detail)?).pretty()
     }
-    print(out.trim_end())
+
+    fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        let picture = |(found, number): (&Identification, usize)| {
+            Ok((format!("force_{number}.svg"), drawn(&panels(&self.fitted[0].record, found)?)))
+        };
+        self.compared.identifications().iter().zip(1..).map(picture).collect()
+    }
 }
 
 /// The models that the arguments describe.
@@ -185,13 +209,18 @@ fn compared(
     records: &[ForceRecord],
     others: &[ForceRecord],
     models: &[Candidate],
+    host: &Host<'_>,
 ) -> Result<Comparison, Box<dyn Error>> {
-    let mut inquiry = Inquiry::of(&Machine::per_unit_mass(), records).validated_by(others);
-    if let Some(seconds) = arguments.time_limit {
-        inquiry = inquiry.within(limit(seconds)?);
-    }
-    let names: Vec<String> = models.iter().map(Candidate::name).collect();
-    let found = while_busy(&format!("fitting {}", names.join(", ")), || inquiry.among(models))?;
+    let machine = Machine::per_unit_mass();
+    let limit = arguments.time_limit.map(limit).transpose()?;
+    let found = host.while_working(|tell| {
+        let show = |law: &str, progress: &Progress<'_>| tell(format!("{law}: step {}", progress.iterations()));
+        let inquiry = Inquiry::of(&machine, records).validated_by(others).observed_by(show);
+        match limit {
+            Some(limit) => inquiry.within(limit).among(models),
+            None => inquiry.among(models),
+        }
+    })?;
     found.map_err(|error| match error {
         IdentifyError::NotPredicted { record, source } => named(&arguments.validate[record - 1])(source).into(),
         error => error.into(),
@@ -234,80 +263,6 @@ fn without_a_law(record: &ForceRecord) -> Vec<String> {
         ));
     }
     lines
-}
-
-fn speeds(record: &ForceRecord) -> Value {
-    let bin = |bin: &SpeedBin| {
-        json!({
-            "speed": bin.speed,
-            "friction_u": pair(bin.friction),
-            "offset_u": bin.offset.map(pair),
-            "load": bin.load,
-            "coefficient_u": bin.coefficient().map(pair),
-            "samples": bin.samples,
-        })
-    };
-    record.friction_over_speed_and_load(BINS, LOADS).iter().map(bin).collect()
-}
-
-fn loops(record: &ForceRecord) -> Value {
-    let cycle = |cycle: &ForceLoop| {
-        json!({
-            "span": cycle.span,
-            "range": cycle.range,
-            "energy_u": pair(cycle.energy),
-            "friction_u": pair(cycle.friction),
-            "stiffness_u": pair(cycle.stiffness),
-        })
-    };
-    record.loops().iter().map(cycle).collect()
-}
-
-fn onsets(record: &ForceRecord) -> Value {
-    let onset = |onset: &Onset| {
-        json!({
-            "begin": onset.begin,
-            "direction": onset.direction,
-            "stiffness_u": pair(onset.stiffness),
-            "breakaway_u": pair(onset.breakaway),
-            "sliding_u": pair(onset.sliding),
-            "displacement": onset.displacement,
-        })
-    };
-    record.onsets().iter().map(onset).collect()
-}
-
-fn document(found: &Identification, files: &[PathBuf], validations: &[Validation]) -> Value {
-    let findings: Vec<Value> = found
-        .findings()
-        .iter()
-        .map(|finding| {
-            json!({
-                "name": finding.parameter().name(),
-                "unit": finding.parameter().unit(),
-                "value": finding.value(),
-                "u": finding.uncertainty(),
-                "interval_95": finding.interval(0.95).map(|(low, high)| [low, high]),
-                "no_interval": finding.without_interval(),
-            })
-        })
-        .collect();
-    let validated = |(file, said): (&PathBuf, &Validation)| {
-        let (file, share) = (file.display().to_string(), said.share());
-        json!({ "file": file, "rms": said.rms, "share_of_force": share })
-    };
-    let predicted = validations.iter().filter_map(|said| said.warning(found.law()));
-    let warnings: Vec<String> =
-        found.warnings().iter().map(ToString::to_string).chain(predicted.map(|w| w.to_string())).collect();
-    json!({
-        "model": found.law(),
-        "samples": found.samples(),
-        "rms_residual": found.rms_residual(),
-        "share_of_force": found.share_of_force(),
-        "findings": findings,
-        "not_fitted": files.iter().zip(validations).map(validated).collect::<Vec<_>>(),
-        "warnings": warnings,
-    })
 }
 
 /// Bins of the friction over the speed.

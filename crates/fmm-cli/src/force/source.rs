@@ -8,8 +8,9 @@ use fmm_identify::ForceRecord;
 use fmm_model::Rounded;
 use fmm_record::{Column, DataFile, Examination, Label, Quantity, Reader, Record, RecordError, WrittenUnit};
 
-use crate::files::{self, named};
+use crate::files::named;
 use crate::force::columns::{Columns, FORCE, LOAD, POSITION, Role, VELOCITY};
+use crate::host::Host;
 use crate::input::Layout;
 
 /// Columns of a table by their meaning.
@@ -128,17 +129,17 @@ struct Part {
 
 impl Source {
     /// The record in the table at `path`.
-    pub(crate) fn read(&self, path: &Path) -> Result<Table, Box<dyn Error>> {
-        self.table(path).map_err(|error| named(path)(error).into())
+    pub(crate) fn read(&self, path: &Path, host: &Host<'_>) -> Result<Table, Box<dyn Error>> {
+        self.table(path, host).map_err(|error| named(path)(error).into())
     }
 
     /// The record in the table at `path`. The first sample alone tells the columns: gaps further on matter where they
     /// are used.
-    fn table(&self, path: &Path) -> Result<Table, Box<dyn Error>> {
+    fn table(&self, path: &Path, host: &Host<'_>) -> Result<Table, Box<dyn Error>> {
         // Numbered samples stand for the clock, so that the times are a column like any other and their steps may
         // differ.
         let reader = self.layout.reader().rate(1.0);
-        let head = files::open(&reader.clone().to(0.0), path)?;
+        let head = host.open(&reader.clone().to(0.0), path)?;
         let mut readings = head.channels()?.into_iter().map(|channel| head.channel(channel.position));
         let is_empty = |reading: &Result<_, RecordError>| matches!(reading, Err(RecordError::Values { .. }));
         let offered = readings.find(|reading| !is_empty(reading)).ok_or("the first sample has no number")??;
@@ -172,7 +173,7 @@ impl Source {
                     .to_owned(),
             );
         }
-        let Part { file, times, all } = self.part(&reader, path, time.as_ref(), &force)?;
+        let Part { file, times, all } = self.part(&reader, path, time.as_ref(), &force, host)?;
         let series = |column: &Column, role: &Role, said| read(&file, column, &all, |label| role.unit(label, said));
         let forces = series(&force, &FORCE, self.force_unit.as_ref())?;
         let said = self.position_unit.as_ref();
@@ -245,8 +246,9 @@ impl Source {
         path: &Path,
         time: Option<&Column>,
         force: &Column,
+        host: &Host<'_>,
     ) -> Result<Part, Box<dyn Error>> {
-        let file = files::open(reader, path)?;
+        let file = host.open(reader, path)?;
         let times = match (time, self.rate) {
             (Some(time), _) => {
                 let mut read = file.channel(time.clone()).map_err(|error| at_its_time(time, error, &[]))?;
@@ -284,7 +286,7 @@ impl Source {
             );
         }
         let reader = reader.clone().from(first as f64).to((end - 1) as f64);
-        Ok(Part { file: files::open(&reader, path)?, times: times[first..end].to_vec(), all: times })
+        Ok(Part { file: host.open(&reader, path)?, times: times[first..end].to_vec(), all: times })
     }
 }
 

@@ -13,13 +13,15 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use crate::answer::{Answer, Detail, Document};
 use crate::files::named;
-use crate::output::{Output, print, while_busy};
+use crate::host::Host;
+use crate::output::Output;
 use analysis::{Analysis, Window};
 use clap::Args;
 use fmm_frf::{FrequencyResponse, RationalFit, ResponseForm};
 use fmm_record::Quantity;
-use serde_json::json;
+use serde::Serialize;
 use trials::{Channels, Trial};
 
 /// Estimates the frequency response of a machine from impact tests.
@@ -37,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FRACTION", default_value_t = 0.01)]
     exponential_end: f64,
     #[command(flatten)]
-    output: Output,
+    pub(crate) output: Output,
 }
 
 /// The form of the response that all trials have.
@@ -93,58 +95,145 @@ fn report(trials: &[Trial], analysis: &Analysis) -> Result<String, std::fmt::Err
     Ok(text)
 }
 
-fn document(trials: &[Trial], analysis: &Analysis) -> serde_json::Value {
-    let lines = |response: &FrequencyResponse| {
-        let part = |part: fn(&fmm_frf::Complex64) -> f64| response.values().iter().map(part).collect::<Vec<_>>();
-        json!({ "real": part(|value| value.re), "imag": part(|value| value.im) })
-    };
-    let measured = |value: fmm_frf::Estimated| json!({ "value": value.value, "u": value.uncertainty });
-    let modes = analysis.peaks.iter().filter_map(|peak| {
-        let mode = peak.fit.as_ref()?;
-        Some(json!({
-            "peak_hz": peak.line.frequency,
-            "natural_frequency_hz": measured(mode.natural_frequency),
-            "damping_ratio": measured(mode.damping_ratio),
-        }))
-    });
-    let pulses = analysis.pulses.iter().map(|pulse| {
-        json!({
-            "level_n": pulse.level,
-            "time_s": pulse.time,
-            "width_s": pulse.width,
-            "further_hits": pulse.further_hits.len(),
-        })
-    });
-    json!({
-        "trials": trials.iter().map(|trial| &trial.name).collect::<Vec<_>>(),
-        "form": analysis.h1.form().to_string(),
-        "unit": analysis.h1.form().unit(),
-        "window": analysis.window,
-        "decay_rate_per_s": analysis.h1.decay_rate(),
-        "averages": analysis.coherence.averages(),
-        "impulses_ns": analysis.impulses,
-        "pulses": pulses.collect::<Vec<_>>(),
-        "frequencies_hz": analysis.h1.frequencies(),
-        "h1": lines(&analysis.h1),
-        "h1_u": analysis.uncertainty,
-        "h2": lines(&analysis.h2),
-        "coherence": analysis.coherence.values(),
-        "usable_hz": analysis.usable,
-        "resonances_hz": analysis.peaks.iter().map(|peak| peak.line.frequency).collect::<Vec<_>>(),
-        "modes": modes.collect::<Vec<_>>(),
-        "warnings": analysis.warnings,
-    })
+/// Frequency response for programs; lists along the lines are as long as `frequencies_hz`.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Content<'a> {
+    /// Names of the trials.
+    trials: Vec<&'a str>,
+    /// Receptance, mobility or accelerance.
+    form: String,
+    /// Unit of the response.
+    unit: &'a str,
+    /// Weights on the samples, in words.
+    window: &'a str,
+    /// Rate of an exponential window, which is taken out of the results again (1/s).
+    decay_rate_per_s: f64,
+    averages: f64,
+    /// N s, one a trial.
+    impulses_ns: &'a [f64],
+    pulses: Vec<OfPulse>,
+    frequencies_hz: &'a [f64],
+    h1: Lines,
+    /// Standard uncertainty of real and imaginary part of H1; none for a single trial.
+    h1_u: Option<&'a [f64]>,
+    h2: Lines,
+    coherence: &'a [f64],
+    /// Frequency up to which the force excites (Hz).
+    usable_hz: f64,
+    /// Lines of the peaks (Hz).
+    resonances_hz: Vec<f64>,
+    modes: Vec<Mode>,
+    warnings: &'a [String],
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let read = |path: &PathBuf| arguments.channels.read(path).map_err(named(path));
+/// The pulse of a trial.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct OfPulse {
+    level_n: f64,
+    time_s: f64,
+    width_s: f64,
+    /// Number of hits after the first.
+    further_hits: usize,
+}
+
+/// A response along the lines.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Lines {
+    real: Vec<f64>,
+    imag: Vec<f64>,
+}
+
+/// A mode that was fitted to a peak.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Mode {
+    /// Line of the peak.
+    peak_hz: f64,
+    natural_frequency_hz: Measured,
+    damping_ratio: Measured,
+}
+
+/// A value and its standard uncertainty.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Measured {
+    value: f64,
+    u: f64,
+}
+
+impl<'a> Content<'a> {
+    fn of(trials: &'a [Trial], analysis: &'a Analysis) -> Self {
+        let lines = |response: &FrequencyResponse| Lines {
+            real: response.values().iter().map(|value| value.re).collect(),
+            imag: response.values().iter().map(|value| value.im).collect(),
+        };
+        let measured = |value: fmm_frf::Estimated| Measured { value: value.value, u: value.uncertainty };
+        let modes = analysis.peaks.iter().filter_map(|peak| {
+            let mode = peak.fit.as_ref()?;
+            Some(Mode {
+                peak_hz: peak.line.frequency,
+                natural_frequency_hz: measured(mode.natural_frequency),
+                damping_ratio: measured(mode.damping_ratio),
+            })
+        });
+        let pulses = analysis.pulses.iter().map(|pulse| OfPulse {
+            level_n: pulse.level,
+            time_s: pulse.time,
+            width_s: pulse.width,
+            further_hits: pulse.further_hits.len(),
+        });
+        Self {
+            trials: trials.iter().map(|trial| trial.name.as_str()).collect(),
+            form: analysis.h1.form().to_string(),
+            unit: analysis.h1.form().unit(),
+            window: &analysis.window,
+            decay_rate_per_s: analysis.h1.decay_rate(),
+            averages: analysis.coherence.averages(),
+            impulses_ns: &analysis.impulses,
+            pulses: pulses.collect(),
+            frequencies_hz: analysis.h1.frequencies(),
+            h1: lines(&analysis.h1),
+            h1_u: analysis.uncertainty.as_deref(),
+            h2: lines(&analysis.h2),
+            coherence: analysis.coherence.values(),
+            usable_hz: analysis.usable,
+            resonances_hz: analysis.peaks.iter().map(|peak| peak.line.frequency).collect(),
+            modes: modes.collect(),
+            warnings: &analysis.warnings,
+        }
+    }
+}
+
+/// Trials and what they say together.
+pub(crate) struct Found {
+    trials: Vec<Trial>,
+    analysis: Analysis,
+}
+
+pub(crate) fn frf(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    let read = |path: &PathBuf| arguments.channels.read(path, host).map_err(named(path));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
     let form = form(&trials)?;
-    let analysis = while_busy("averaging and fitting modes", || {
+    let analysis = host.while_busy("averaging and fitting modes", || {
         Analysis::of(&trials, form, arguments.window, arguments.exponential_end)
     })??;
-    let text =
-        if arguments.output.json { document(&trials, &analysis).to_string() } else { report(&trials, &analysis)? };
-    print(text.trim_end())?;
-    arguments.output.draw("{trials,response,magnitude}.svg", || Ok(figures::pictures(&trials, &analysis)))
+    Ok(Found { trials, analysis })
+}
+
+impl Answer for Found {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(report(&self.trials, &self.analysis)?.trim_end().to_owned())
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("frf-1", Content::of(&self.trials, &self.analysis)).compact()
+    }
+
+    fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        let pictures = figures::pictures(&self.trials, &self.analysis).into_iter();
+        Ok(pictures.map(|(name, svg)| (name.to_owned(), svg)).collect())
+    }
 }

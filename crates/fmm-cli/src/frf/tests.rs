@@ -11,6 +11,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::analysis::{Analysis, Window};
 use super::trials::{Channels, Trial};
+use crate::host::Host;
 use crate::input::Layout;
 
 const ACCELERATION: Channels = Channels {
@@ -42,11 +43,14 @@ fn hammers() -> Vec<PathBuf> {
 }
 
 fn read(choice: &Channels, path: &Path) -> Trial {
-    choice.read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    choice.read(path, &Host::default()).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 fn refusal(choice: &Channels, path: &Path) -> String {
-    choice.read(path).err().map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
+    choice
+        .read(path, &Host::default())
+        .err()
+        .map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
 }
 
 fn bundled() -> Vec<Trial> {

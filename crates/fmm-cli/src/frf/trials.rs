@@ -7,6 +7,7 @@ use clap::Args;
 use fmm_record::{Channel, Column, Label, Quantity, Reading, Record};
 
 use crate::files;
+use crate::host::Host;
 use crate::input::{Layout, in_options, is_motion, motion};
 
 /// One blow.
@@ -48,12 +49,12 @@ pub(crate) struct Channels {
 
 impl Channels {
     /// Reads the two channels of a file.
-    pub(crate) fn read(&self, path: &Path) -> Result<Trial, Box<dyn Error>> {
+    pub(crate) fn read(&self, path: &Path, host: &Host<'_>) -> Result<Trial, Box<dyn Error>> {
         let mut reader = self.layout.reader();
         if let Some(rate) = self.rate {
             reader = reader.rate(rate);
         }
-        let file = files::open(&reader, path)?;
+        let file = host.open(&reader, path)?;
         let (force, response, quantity) = self.channels(&file.channels()?)?;
         let (force, response) = (file.channel(force)?, file.channel(response)?);
         let origin = format!("{} and {}; the sampling rate was {}", force.channel, response.channel, force.sampling);

@@ -14,7 +14,7 @@ use fmm_frf::{BackboneOptions, IsolatedMode, decay_modes};
 use fmm_identify::Preparation;
 use fmm_record::Record;
 
-use crate::files;
+use crate::host::Host;
 pub(crate) use question::{Held, Question, limit};
 use source::BUNDLED;
 pub(crate) use source::{Choice, Input, Layout, in_options, is_motion, motion, motion_called};
@@ -82,24 +82,24 @@ impl Given {
     }
 
     /// The bytes of the file.
-    pub(crate) fn bytes(&self) -> Result<Cow<'static, [u8]>, Box<dyn Error>> {
+    pub(crate) fn bytes(&self, host: &Host<'_>) -> Result<Cow<'static, [u8]>, Box<dyn Error>> {
         Ok(match &self.file {
             None => Cow::Borrowed(BUNDLED.1),
-            Some(file) => Cow::Owned(files::bytes(file)?),
+            Some(file) => Cow::Owned(host.bytes(file)?),
         })
     }
 
     /// The record.
-    pub(crate) fn read(&self) -> Result<Input, Box<dyn Error>> {
+    pub(crate) fn read(&self, host: &Host<'_>) -> Result<Input, Box<dyn Error>> {
         match &self.file {
-            Some(file) => self.choice.read(file),
+            Some(file) => self.choice.read(file, host),
             None => self.choice.read_bundled(),
         }
     }
 
     /// The record less all modes but the one that is meant, if one is.
-    pub(crate) fn read_mode(&self) -> Result<Input, Box<dyn Error>> {
-        let mut input = self.read()?;
+    pub(crate) fn read_mode(&self, host: &Host<'_>) -> Result<Input, Box<dyn Error>> {
+        let mut input = self.read(host)?;
         if let Some(mode) = self.mode {
             let isolated = IsolatedMode::of(&input.record, &mode.options(&input.record)?)?;
             let (frequency, edge) = (isolated.frequency, isolated.edge);

@@ -10,7 +10,9 @@ use fmm_record::{
     Column, DataFile, Format, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit,
 };
 
+use crate::answer::Remedied;
 use crate::files;
+use crate::host::Host;
 
 /// The record to identify, and how it was read.
 pub(crate) struct Input {
@@ -20,15 +22,6 @@ pub(crate) struct Input {
     pub(crate) origin: String,
     /// Faults of the file.
     pub(crate) warnings: Vec<String>,
-}
-
-impl Input {
-    /// Shows what was not as it should be.
-    pub(crate) fn warn(&self) {
-        for warning in &self.warnings {
-            eprintln!("warning: {warning}");
-        }
-    }
 }
 
 /// Layout of a file, where the table is not all of it.
@@ -158,23 +151,23 @@ impl Choice {
     }
 
     /// Reads a file of any format.
-    pub(crate) fn read(&self, path: &Path) -> Result<Input, Box<dyn Error>> {
+    pub(crate) fn read(&self, path: &Path, host: &Host<'_>) -> Result<Input, Box<dyn Error>> {
         if path.is_dir() {
             return Err(format!("{} is a folder; `fmm batch` takes the records in one", path.display()).into());
         }
-        let (reading, file) = self.reading(|reader| files::open(reader, path))?;
+        let (reading, file) = self.reading(|reader| host.open(reader, path))?;
         let mut warnings: Vec<String> =
             file.warnings().iter().chain(&reading.remarks).map(|remark| in_options(remark)).collect();
-        warnings.extend(self.other_rate(path, &reading));
+        warnings.extend(self.other_rate(path, &reading, host));
         self.input(path, &Label::from(&reading), &reading, warnings)
     }
 
     /// Warning of a file that states another sampling rate than the user.
-    fn other_rate(&self, path: &Path, reading: &Reading) -> Option<String> {
+    fn other_rate(&self, path: &Path, reading: &Reading, host: &Host<'_>) -> Option<String> {
         /// Relative difference that counts as one.
         const OTHER: f64 = 1e-3;
         let rate = self.rate?;
-        let file = files::open(&self.reader(), path).ok()?;
+        let file = host.open(&self.reader(), path).ok()?;
         let stated = file.channel(reading.channel.as_str()).ok()?.record.rate();
         let is_other = (stated / rate - 1.0).abs() > OTHER;
         is_other.then(|| format!("the {rate} Hz of --rate were taken, though the file says {stated} Hz"))
@@ -209,17 +202,18 @@ impl Choice {
             Some(channel) => file.channel(channel.clone()),
             None => file.choose(&self.request()),
         };
-        let reading = reading.map_err(|error| match error {
-            RecordError::TimeAxis { .. } => format!(
-                "{error}; here the rate is --rate, \
-                 the time is --time, its unit is --time-unit, and --from and --to cut the record"
-            )
-            .into(),
-            RecordError::Damaged { line: Some(_), .. } if file.format() != Format::Universal => format!(
-                "{error}; --repair uses the record around damaged lines, and --skip passes over lines above the table"
-            )
-            .into(),
-            error => self.with_remedy(error),
+        let reading = reading.map_err(|error| {
+            let remedy = match &error {
+                RecordError::TimeAxis { .. } => {
+                    "here the rate is --rate, the time is --time, its unit is --time-unit, and --from and --to cut the \
+                     record"
+                }
+                RecordError::Damaged { line: Some(_), .. } if file.format() != Format::Universal => {
+                    "--repair uses the record around damaged lines, and --skip passes over lines above the table"
+                }
+                _ => return self.with_remedy(error),
+            };
+            Remedied { error, remedy: remedy.to_owned() }.into()
         })?;
         Ok((reading, file))
     }
@@ -255,12 +249,13 @@ impl Choice {
         let (RecordError::Unclear { remedy, .. } | RecordError::Contradiction { remedy, .. }) = &error else {
             return error.into();
         };
-        match &error {
-            _ if !self.is_drive => format!("{error}; {}", in_options(remedy)).into(),
+        let remedy = match &error {
+            _ if !self.is_drive => in_options(remedy),
             // The options speak of the motion.
-            RecordError::Contradiction { .. } => format!("{error}; name another channel").into(),
-            _ => format!("{error}; write the unit into the name of the channel, as in \"base [m/s^2]\"").into(),
-        }
+            RecordError::Contradiction { .. } => "name another channel".to_owned(),
+            _ => "write the unit into the name of the channel, as in \"base [m/s^2]\"".to_owned(),
+        };
+        Remedied { error, remedy }.into()
     }
 }
 

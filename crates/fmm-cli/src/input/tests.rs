@@ -6,6 +6,7 @@ use fmm_record::uff::{ByteOrder, DataSet, Form, write};
 use fmm_record::{Column, Quantity, Record};
 
 use super::{Choice, Input};
+use crate::host::Host;
 
 /// A file in a folder of these tests.
 fn file(name: &str) -> PathBuf {
@@ -40,13 +41,16 @@ fn unit(text: &str) -> Choice {
 }
 
 fn read(choice: &Choice, path: &Path) -> Input {
-    let input = choice.read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let input = choice.read(path, &Host::default()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     assert!(input.warnings.is_empty(), "{:?}", input.warnings);
     input
 }
 
 fn refusal(choice: &Choice, path: &Path) -> String {
-    choice.read(path).err().map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
+    choice
+        .read(path, &Host::default())
+        .err()
+        .map_or_else(|| panic!("{} was read", path.display()), |error| error.to_string())
 }
 
 /// Quantity, unit and first value.
@@ -159,11 +163,11 @@ fn universal_files_state_quantity_and_unit() {
 fn what_is_missing_outside_of_the_span_does_not_matter() {
     let path = file("gap.csv");
     std::fs::write(&path, "t [s],v [m/s]\n0,NaN\n1,1\n2,2\n3,3\n").unwrap();
-    let whole = Choice::default().read(&path).unwrap();
+    let whole = Choice::default().read(&path, &Host::default()).unwrap();
     assert_eq!(whole.record.values(), [1.0, 2.0, 3.0]);
     let said = "1 of 4 rows have no number in the channel and were left out";
     assert!(whole.warnings.iter().any(|warning| warning.contains(said)), "{:?}", whole.warnings);
-    let cut = Choice { from: Some(1.0), to: Some(2.0), ..Choice::default() }.read(&path).unwrap();
+    let cut = Choice { from: Some(1.0), to: Some(2.0), ..Choice::default() }.read(&path, &Host::default()).unwrap();
     assert_eq!((cut.record.start(), cut.record.values()), (1.0, &[1.0, 2.0][..]));
 }
 
@@ -171,9 +175,9 @@ fn what_is_missing_outside_of_the_span_does_not_matter() {
 fn uneven_times_are_taken_unless_a_rate_is_given() {
     let path = file("uneven.csv");
     std::fs::write(&path, "t [s],v [m/s]\n0,0\n1,1\n3,2\n4,3\n5,4\n").unwrap();
-    let record = Choice::default().read(&path).unwrap().record;
+    let record = Choice::default().read(&path, &Host::default()).unwrap().record;
     assert!(!record.is_equally_spaced() && record.time(2) == 3.0);
-    let stepped = Choice { rate: Some(1.0), ..Choice::default() }.read(&path).unwrap();
+    let stepped = Choice { rate: Some(1.0), ..Choice::default() }.read(&path, &Host::default()).unwrap();
     assert_eq!(stepped.record.rate(), 1.0);
     let said = "the 1 Hz of --rate were taken, though the file says 0.8 Hz";
     assert_eq!(stepped.warnings, [said]);
@@ -183,7 +187,7 @@ fn uneven_times_are_taken_unless_a_rate_is_given() {
 fn remarks_name_options_that_exist() {
     let path = file("parts.csv");
     std::fs::write(&path, "t [s],v [m/s]\n0,1\n1,2\n2,3\nt [s],v [m/s]\n0,4\n1,5\n2,6\n").unwrap();
-    let input = Choice::default().read(&path).unwrap();
+    let input = Choice::default().read(&path, &Host::default()).unwrap();
     assert!(input.warnings[0].ends_with("which has 3 of 6 samples; --table chooses another"), "{:?}", input.warnings);
     std::fs::write(&path, "t [s],v [m/s]\n0,1\n1,x\n2,3\n").unwrap();
     let refused = refusal(&Choice::default(), &path);

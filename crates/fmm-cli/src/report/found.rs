@@ -11,6 +11,7 @@ use crate::posterior::Posterior;
 
 /// Friction over the speed without a law, or the reason why it cannot be had.
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub(crate) enum Curve {
     Found(Box<FrictionCurve>),
@@ -34,15 +35,29 @@ impl Curve {
 pub(crate) struct Found {
     /// The file, the channel, what it was taken for.
     pub(crate) origin: String,
+    /// Faults of the file.
+    pub(crate) remarks: Vec<String>,
     pub(crate) decay: Experiment,
     pub(crate) comparison: Comparison,
     /// `None` where laws are compared.
     pub(crate) curve: Option<Curve>,
     /// Of the preferred law, if that was asked for.
     pub(crate) posterior: Option<Posterior>,
+    /// Why there is no posterior though one was asked for.
+    pub(crate) failure: Option<String>,
+    /// What was typed.
+    pub(crate) command: String,
+    /// Digest of the file.
+    pub(crate) sha256: String,
 }
 
 impl Found {
+    /// The motion fitted by the preferred law at the samples of the record, in its unit.
+    pub(crate) fn fitted(&self) -> Result<Vec<f64>, &'static str> {
+        let model = self.comparison.preferred().model(std::slice::from_ref(&self.decay), 0);
+        model.ok_or("the fitted motion cannot be drawn")
+    }
+
     /// Friction over the speed with its intervals, and the preferred law in it; `None` without a curve.
     pub(crate) fn curve_panels(&self) -> Option<Vec<Panel>> {
         let Some(Curve::Found(curve)) = &self.curve else { return None };
@@ -81,10 +96,10 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    pub(crate) fn of(decay: &Experiment, comparison: &Comparison) -> Result<Self, Box<dyn Error>> {
-        let preferred = comparison.preferred();
+    pub(crate) fn of(found: &Found) -> Result<Self, Box<dyn Error>> {
+        let (decay, preferred) = (&found.decay, found.comparison.preferred());
         let record = decay.record();
-        let model = preferred.model(std::slice::from_ref(decay), 0).ok_or("the fitted motion cannot be drawn")?;
+        let model = found.fitted()?;
         let (unit, quantity) = (record.unit(), record.quantity());
         let curve = |values: &[f64]| record.times().zip(values.iter().copied()).collect::<Vec<_>>();
         let residuals: Vec<f64> =

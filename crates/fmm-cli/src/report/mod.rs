@@ -15,6 +15,7 @@ use sha2::{Digest, Sha256};
 use self::budget::budget;
 pub(crate) use self::found::{Curve, Found, Pictures};
 use self::profiles::profiles;
+use crate::answer::{Answer, Detail};
 use crate::backbone;
 use crate::figure::{Panel, Role, drawn, histogram, label};
 use crate::output::of_size;
@@ -26,12 +27,12 @@ const LEVEL: f64 = 0.95;
 const PERIODS: f64 = 2.0;
 const LAGS: usize = 300;
 
-/// The page on what was `found` in a record with these bytes by this `command`. The same input makes the same page.
-pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<String, Box<dyn Error>> {
+/// The page on what was `found` in a record. The same input makes the same page.
+pub(crate) fn document(found: &Found) -> Result<String, Box<dyn Error>> {
     let Found { origin, decay, comparison, posterior, .. } = found;
     let name = origin.split(", channel").next().unwrap_or(origin);
-    let pictures = Pictures::of(decay, comparison)?;
-    let json = serde_json::to_string(comparison)?;
+    let pictures = Pictures::of(found)?;
+    let json = found.document(Detail::Brief)?;
     let title = format!("Friction of {name}");
     let body = [
         format!("<h1>{}</h1>\n<p class=\"verdict\">{}</p>\n", escaped(&title), escaped(&comparison.headline())),
@@ -53,9 +54,9 @@ pub(crate) fn document(found: &Found, bytes: &[u8], command: &str) -> Result<Str
         section("Laws", &laws(found)),
         section("Residuals", &residuals(found, &pictures)),
         section("Amplitude", &amplitude(found, &pictures)),
-        section("How this was made", &making(found, bytes, command)),
-        // What closes a script ends it, wherever it stands.
-        format!("<script type=\"application/json\" id=\"result\">{}</script>\n", json.replace("</", "<\\/")),
+        section("How this was made", &making(found)),
+        // What looks like the end of a script ends it, wherever it stands.
+        format!("<script type=\"application/json\" id=\"result\">{}</script>\n", json.replace('<', "\\u003c")),
     ];
     Ok(page(&title, &body.concat()))
 }
@@ -183,14 +184,18 @@ fn amplitude(found: &Found, pictures: &Pictures) -> String {
     amplitudes + &backbone
 }
 
+/// SHA-256 of `bytes` in hexadecimal digits.
+pub(crate) fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
+}
+
 /// Version, command, input.
-fn making(found: &Found, bytes: &[u8], command: &str) -> String {
-    let digest = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
+fn making(found: &Found) -> String {
     let entries = [
         ("Program", format!("fmm {}", env!("CARGO_PKG_VERSION"))),
-        ("Command", command.to_owned()),
+        ("Command", found.command.clone()),
         ("Input", found.origin.clone()),
-        ("SHA-256 of the input", digest),
+        ("SHA-256 of the input", found.sha256.clone()),
         ("Result for programs", "one JSON document in the element with the id \"result\" of this file".to_owned()),
     ];
     let entries = entries.map(|(name, text)| format!("<dt>{name}</dt><dd><code>{}</code></dd>", escaped(&text)));
@@ -229,9 +234,13 @@ mod tests {
             comparison,
             curve: None,
             posterior: None,
+            remarks: Vec::new(),
+            failure: None,
+            command: "fmm identify <script>.csv".to_owned(),
+            sha256: digest(b"abc"),
         };
-        let page = document(&found, b"abc", "fmm identify <script>.csv").unwrap();
-        assert_eq!(page, document(&found, b"abc", "fmm identify <script>.csv").unwrap());
+        let page = document(&found).unwrap();
+        assert_eq!(page, document(&found).unwrap());
         assert!(page.contains(&Rounded::new(value, Some(u)).to_string()) && !page.contains("http"));
         assert!(page.contains(&format!("<td class=\"number\">{k:.2}</td>")) && k < 2.0, "{k}");
         // SHA-256 of "abc", as FIPS 180-2 prints it.

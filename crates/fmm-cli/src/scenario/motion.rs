@@ -8,6 +8,7 @@ use super::contact::Setting;
 
 /// A motion: engine, events, samples and energies. Serialised, it is the document of `--json`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Motion {
     /// Name of the engine that made it.
     pub(crate) engine: &'static str,
@@ -18,6 +19,7 @@ pub(crate) struct Motion {
 
 /// An event.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Incident {
     /// s.
     pub(crate) t: f64,
@@ -42,6 +44,7 @@ pub(crate) struct Incident {
 
 /// The samples, one array a quantity.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Series {
     /// s.
     pub(crate) t: Vec<f64>,
@@ -56,6 +59,7 @@ pub(crate) struct Series {
 
 /// Energies and works at the samples (J).
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Energy {
     pub(crate) kinetic: Vec<f64>,
     pub(crate) potential: Vec<f64>,
@@ -67,6 +71,7 @@ pub(crate) struct Energy {
 
 /// Works up to the samples (J).
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Account {
     pub(crate) friction: Vec<f64>,
     pub(crate) viscous: Vec<f64>,

@@ -17,7 +17,7 @@ const MOST_MARKS: usize = 500;
 ///
 /// # Errors
 /// If the motion cannot be simulated again.
-pub(crate) fn pictures(scenario: &Simulation, motion: &Motion) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
+pub(crate) fn pictures(scenario: &Simulation, motion: &Motion) -> Result<Vec<(String, String)>, Box<dyn Error>> {
     let end = motion.samples.t.last().copied().unwrap_or(0.0);
     let end = motion.events.last().map_or(end, |event| event.t.max(end));
     let mut times: Vec<f64> = (0..=POINTS).map(|index| end * index as f64 / POINTS as f64).collect();
@@ -30,8 +30,8 @@ pub(crate) fn pictures(scenario: &Simulation, motion: &Motion) -> Result<Vec<(&'
         Err(error) => return Err(error),
     };
     Ok(vec![
-        ("motion.svg", drawn(&motion_panels(scenario, &dense))),
-        ("friction.svg", drawn(&friction_panels(scenario, &dense))),
+        ("motion.svg".to_owned(), drawn(&motion_panels(scenario, &dense))),
+        ("friction.svg".to_owned(), drawn(&friction_panels(scenario, &dense))),
     ])
 }
 

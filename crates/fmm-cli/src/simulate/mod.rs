@@ -12,9 +12,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::answer::{Answer, Detail, Document};
 use crate::figure::{ends, label};
 use crate::files;
-use crate::output::{Output, print, while_busy};
+use crate::host::Host;
+use crate::output::Output;
 use crate::scenario::{Motion, Simulation};
 
 /// Simulates a machine with a sliding contact.
@@ -25,19 +27,41 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     record: record::Record,
     #[command(flatten)]
-    output: Output,
+    pub(crate) output: Output,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+/// A scenario and its motion.
+pub(crate) struct Simulated {
+    /// Text of the scenario, which is read again where it is drawn: a law is at home in one thread.
+    scenario: String,
+    motion: Motion,
+    written: Option<String>,
+}
+
+pub(crate) fn simulate(arguments: &Arguments, host: &Host<'_>) -> Result<Simulated, Box<dyn Error>> {
     let path = &arguments.scenario;
-    let scenario = Simulation::read(&files::text(path)?).map_err(files::named(path))?;
-    let motion = while_busy("simulating", || scenario.run())?.map_err(files::named(path))?;
-    arguments.record.write(&scenario, &motion)?;
-    arguments.output.draw("{motion,friction}.svg", || figures::pictures(&scenario, &motion))?;
-    if arguments.output.json {
-        print(serde_json::to_string(&motion)?)
-    } else {
-        print(text(&scenario, &motion)?.trim_end())
+    let text = host.text(path)?;
+    let scenario = Simulation::read(&text).map_err(files::named(path))?;
+    let motion = host.while_busy("simulating", || scenario.run().map_err(files::named(path)))??;
+    let written = arguments.record.write(&scenario, &motion)?;
+    Ok(Simulated { scenario: text, motion, written })
+}
+
+impl Answer for Simulated {
+    fn text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(text(&Simulation::read(&self.scenario)?, &self.motion)?.trim_end().to_owned())
+    }
+
+    fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
+        Document::new("simulate-1", &self.motion).compact()
+    }
+
+    fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        figures::pictures(&Simulation::read(&self.scenario)?, &self.motion)
+    }
+
+    fn written(&self) -> Option<String> {
+        self.written.clone()
     }
 }
 

@@ -25,15 +25,14 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Writes the table, if it is asked for, and says so.
-    pub(super) fn write(&self, scenario: &Simulation, motion: &Motion) -> Result<(), String> {
-        let Some(path) = &self.file else { return Ok(()) };
+    /// Writes the table, if it is asked for, and tells where.
+    pub(super) fn write(&self, scenario: &Simulation, motion: &Motion) -> Result<Option<String>, String> {
+        let Some(path) = &self.file else { return Ok(None) };
         if !(self.noise >= 0.0 && self.noise.is_finite()) {
             return Err(format!("--noise {}: give a share of the largest value, such as 0.001", self.noise));
         }
         self.table(path, scenario, motion).map_err(named(path))?;
-        eprintln!("record: {}", path.display());
-        Ok(())
+        Ok(Some(format!("record: {}", path.display())))
     }
 
     fn table(&self, path: &Path, scenario: &Simulation, motion: &Motion) -> Result<(), csv::Error> {

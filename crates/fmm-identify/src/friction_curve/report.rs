@@ -51,38 +51,69 @@ impl fmt::Display for FrictionCurve {
 
 #[cfg(feature = "serde")]
 mod serialised {
-    use serde::ser::{Serialize, SerializeStruct, Serializer};
+    use serde::Serialize;
 
     use crate::friction_curve::{FrictionCurve, FrictionLevel};
+    use crate::written::written_as;
 
-    /// `value`, standard uncertainty `u` and `interval_95`.
-    impl Serialize for FrictionLevel {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let mut document = serializer.serialize_struct("FrictionLevel", 3)?;
-            document.serialize_field("value", &self.value())?;
-            document.serialize_field("u", &self.uncertainty())?;
-            document.serialize_field("interval_95", &self.interval(0.95))?;
-            document.end()
+    written_as! { FrictionLevel as LevelDocument, FrictionCurve as CurveDocument }
+
+    /// Friction at a speed, or over a path.
+    #[derive(Serialize)]
+    #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+    struct LevelDocument {
+        value: f64,
+        /// Standard uncertainty.
+        u: f64,
+        interval_95: Option<(f64, f64)>,
+    }
+
+    impl LevelDocument {
+        fn of(level: &FrictionLevel) -> Self {
+            Self { value: level.value(), u: level.uncertainty(), interval_95: level.interval(0.95) }
         }
     }
 
-    /// Meaning and units, the three numbers, then for each speed its level, and the simultaneous 95 % band.
-    impl Serialize for FrictionCurve {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let mut document = serializer.serialize_struct("FrictionCurve", 12)?;
-            document.serialize_field("quantity", self.name())?;
-            document.serialize_field("unit", self.unit())?;
-            document.serialize_field("speed_unit", self.speed_unit())?;
-            document.serialize_field("whole_resistance", &self.is_whole())?;
-            document.serialize_field("at_rest", &self.at_rest())?;
-            document.serialize_field("mean_over_path", &self.mean_over_path())?;
-            document.serialize_field("at_top_speed", &self.at_top_speed())?;
-            document.serialize_field("speeds", self.speeds())?;
-            document.serialize_field("levels", &self.levels())?;
-            document.serialize_field("simultaneous_band_95", &self.band(0.95))?;
-            document.serialize_field("samples_down_to", &self.slowest())?;
-            document.serialize_field("limits", self.limits())?;
-            document.end()
+    /// Friction over the speed, no law assumed.
+    #[derive(Serialize)]
+    #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+    struct CurveDocument<'a> {
+        /// Friction coefficient, force or per mass.
+        quantity: &'a str,
+        unit: &'a str,
+        speed_unit: &'a str,
+        /// False if a declared damping of the machine is not part of the curve.
+        whole_resistance: bool,
+        at_rest: FrictionLevel,
+        mean_over_path: FrictionLevel,
+        at_top_speed: FrictionLevel,
+        /// Speeds of `levels` and of the band.
+        speeds: &'a [f64],
+        levels: Vec<FrictionLevel>,
+        /// In which the whole curve lies with 95 %.
+        simultaneous_band_95: Option<Vec<(f64, f64)>>,
+        /// Speed below which there is no sample.
+        samples_down_to: f64,
+        /// What speaks against the curve.
+        limits: &'a [String],
+    }
+
+    impl<'a> CurveDocument<'a> {
+        fn of(curve: &'a FrictionCurve) -> Self {
+            Self {
+                quantity: curve.name(),
+                unit: curve.unit(),
+                speed_unit: curve.speed_unit(),
+                whole_resistance: curve.is_whole(),
+                at_rest: curve.at_rest(),
+                mean_over_path: curve.mean_over_path(),
+                at_top_speed: curve.at_top_speed(),
+                speeds: curve.speeds(),
+                levels: curve.levels(),
+                simultaneous_band_95: curve.band(0.95),
+                samples_down_to: curve.slowest(),
+                limits: curve.limits(),
+            }
         }
     }
 }

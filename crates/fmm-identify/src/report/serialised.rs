@@ -4,192 +4,357 @@ use std::collections::BTreeMap;
 
 use fmm_fit::EstimateStatus;
 use fmm_uq::{Budget, Contribution};
-use serde::ser::{Serialize, SerializeStruct, Serializer};
+use serde::Serialize;
 
 use crate::experiment::RecordSummary;
 use crate::finding::{Finding, Origin};
-use crate::identification::Identification;
+use crate::identification::{FittedMotion, Identification};
 use crate::judgement::unseen_damping::UnseenDamping;
 use crate::judgement::{Comparison, FrictionChange, ScoreTest};
 use crate::report::FrictionBound;
+use crate::written::written_as;
 
-impl Serialize for Finding {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let status = match self.origin() {
-            Origin::Derived => "derived",
-            Origin::Fitted(EstimateStatus::Undetermined) => "undetermined",
-            Origin::Fitted(EstimateStatus::Fixed) => "fixed",
-            Origin::Fitted(status) if status.is_at_bound() => "at_bound",
-            Origin::Fitted(_) => "fitted",
+written_as! {
+    Finding as FindingDocument,
+    Identification as IdentificationDocument,
+    RecordSummary as RecordDocument,
+    FrictionChange as ChangeDocument,
+    UnseenDamping as UnseenDampingDocument,
+    FrictionBound as BoundDocument,
+    ScoreTest as ScoreTestDocument,
+    Comparison as ComparisonDocument,
+}
+
+/// A quantity that was found, in `unit`.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct FindingDocument<'a> {
+    value: f64,
+    /// Standard uncertainty; none where the record does not determine the value.
+    u: Option<f64>,
+    interval_95: Option<(f64, f64)>,
+    /// Why there is no interval.
+    no_interval: Option<&'static str>,
+    /// Of u; none where they are infinite.
+    degrees_of_freedom: Option<f64>,
+    unit: &'a str,
+    /// `fitted`, `derived`, `fixed`, `at_bound` or `undetermined`.
+    status: &'static str,
+    /// Sources of u.
+    contributions: Vec<Part>,
+}
+
+/// Source of a part of an uncertainty.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct Part {
+    source: String,
+    /// In the unit of the finding.
+    u: f64,
+    /// Share of the variance (1).
+    share: f64,
+    /// None where they are infinite.
+    degrees_of_freedom: Option<f64>,
+}
+
+/// An infinite number of degrees of freedom is none, as JSON has none.
+fn finite(freedom: f64) -> Option<f64> {
+    Some(freedom).filter(|freedom| freedom.is_finite())
+}
+
+impl<'a> FindingDocument<'a> {
+    fn of(finding: &'a Finding) -> Self {
+        let part = |part: Contribution<'_>| Part {
+            source: part.input.name().to_owned(),
+            u: part.uncertainty,
+            share: part.share.clamp(0.0, 1.0),
+            degrees_of_freedom: finite(part.input.degrees_of_freedom()),
         };
-        // An infinite number of them is null, as JSON has none.
-        let freedom = Some(self.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
-        let budget = self.budget();
-        let contributions: Vec<Part<'_>> = budget.iter().flat_map(Budget::contributions).map(Part).collect();
-        let mut document = serializer.serialize_struct("Finding", 8)?;
-        document.serialize_field("value", &self.value())?;
-        document.serialize_field("u", &self.uncertainty())?;
-        document.serialize_field("interval_95", &self.interval(0.95))?;
-        document.serialize_field("no_interval", &self.without_interval())?;
-        document.serialize_field("degrees_of_freedom", &freedom)?;
-        document.serialize_field("unit", self.parameter().unit())?;
-        document.serialize_field("status", status)?;
-        document.serialize_field("contributions", &contributions)?;
-        document.end()
-    }
-}
-
-/// Source of a part of an uncertainty, with u and its share of the variance.
-struct Part<'a>(Contribution<'a>);
-
-impl Serialize for Part<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let freedom = Some(self.0.input.degrees_of_freedom()).filter(|freedom| freedom.is_finite());
-        let mut document = serializer.serialize_struct("Contribution", 4)?;
-        document.serialize_field("source", self.0.input.name())?;
-        document.serialize_field("u", &self.0.uncertainty)?;
-        document.serialize_field("share", &self.0.share.clamp(0.0, 1.0))?;
-        document.serialize_field("degrees_of_freedom", &freedom)?;
-        document.end()
-    }
-}
-
-/// `law`, `parameters` (by name), `rms_residual`, `rank`, `stop_time_s` and `swings` (of the first record),
-/// `aicc` (all residuals counted), `outcome`, `autocorrelation_time`, `warnings`.
-impl Serialize for Identification {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let parameters: BTreeMap<_, _> =
-            self.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect();
-        let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Identification", 10)?;
-        document.serialize_field("law", self.law())?;
-        document.serialize_field("parameters", &parameters)?;
-        document.serialize_field("rms_residual", &self.rms_residual())?;
-        document.serialize_field("rank", &self.fit().rank())?;
-        document.serialize_field(
-            "stop_time_s",
-            &self.motions().first().and_then(crate::identification::FittedMotion::stop_time),
-        )?;
-        document
-            .serialize_field("swings", &self.motions().first().map(crate::identification::FittedMotion::half_swings))?;
-        document.serialize_field("aicc", &self.fit().corrected_akaike())?;
-        document.serialize_field("outcome", &self.fit().outcome().to_string())?;
-        document.serialize_field("autocorrelation_time", &self.autocorrelation_time())?;
-        document.serialize_field("warnings", &warnings)?;
-        document.end()
-    }
-}
-
-/// Record: times in s, rates in Hz, values in `unit`.
-impl Serialize for RecordSummary {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("RecordSummary", 27)?;
-        document.serialize_field("from_s", &self.from)?;
-        document.serialize_field("to_s", &self.to)?;
-        document.serialize_field("samples", &self.samples)?;
-        document.serialize_field("rate_hz", &self.rate)?;
-        document.serialize_field("quantity", &self.quantity.to_string())?;
-        document.serialize_field("unit", &self.unit)?;
-        document.serialize_field("offset_held_at", &self.held_offset)?;
-        document.serialize_field("gain_uncertainty", &self.gain_uncertainty)?;
-        document.serialize_field("clock_uncertainty", &self.clock_uncertainty)?;
-        document.serialize_field("release_s", &self.release)?;
-        document.serialize_field("half_swings", &self.half_swings)?;
-        document.serialize_field("first_amplitude", &self.amplitudes.0)?;
-        document.serialize_field("last_amplitude", &self.amplitudes.1)?;
-        document.serialize_field("frequency_hz", &self.frequency)?;
-        document.serialize_field("noise", &self.noise)?;
-        document.serialize_field("resolution", &self.resolution)?;
-        document.serialize_field("rest_from_s", &self.rest_from)?;
-        document.serialize_field("spikes", &self.spikes)?;
-        document.serialize_field("saturated", &self.saturation.map_or(0, |saturation| saturation.samples))?;
-        document.serialize_field("offset_step_s", &self.offset_step.map(|step| step.time))?;
-        document.serialize_field("period_change", &self.period_change)?;
-        let hum: Vec<(f64, f64)> = self.hum.iter().map(|hum| (hum.frequency, hum.amplitude)).collect();
-        document.serialize_field("hum_hz_amplitude", &hum)?;
-        document.serialize_field("further_releases_s", &self.further_releases)?;
-        document.serialize_field("interrupted_after_s", &self.interruption.map(|taken| taken.sound_until))?;
-        document.serialize_field("samples_per_measured", &self.upsampling.map_or(1, |upsampling| upsampling.factor))?;
-        document.serialize_field("second_mode_hz", &self.second_mode.map(|mode| mode.frequency))?;
-        document.serialize_field("second_mode_share", &self.second_mode.map(|mode| mode.share))?;
-        document.end()
-    }
-}
-
-/// Relative change with each half cycle, its standard uncertainty, and the relative error of the level over it.
-impl Serialize for FrictionChange {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("FrictionChange", 3)?;
-        document.serialize_field("per_half_cycle", &self.per_half_cycle)?;
-        document.serialize_field("uncertainty", &self.uncertainty)?;
-        document.serialize_field("price", &self.price)?;
-        document.end()
-    }
-}
-
-/// The damping that the residuals ask for, its standard uncertainty, the largest that would not show, and the relative
-/// error of the level over it.
-impl Serialize for UnseenDamping {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("UnseenDamping", 4)?;
-        document.serialize_field("per_mass", &self.per_mass)?;
-        document.serialize_field("uncertainty", &self.uncertainty)?;
-        document.serialize_field("largest_unseen", &self.largest_unseen())?;
-        document.serialize_field("price", &self.price)?;
-        document.end()
-    }
-}
-
-/// `name` and `unit` of the friction, `upper_95`, and the `law` that has it.
-impl Serialize for FrictionBound {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("FrictionBound", 4)?;
-        document.serialize_field("name", &self.name)?;
-        document.serialize_field("unit", &self.unit)?;
-        document.serialize_field("upper_95", &self.upper_95)?;
-        document.serialize_field("law", &self.law)?;
-        document.end()
-    }
-}
-
-/// The extension, its size and standard uncertainty.
-impl Serialize for ScoreTest {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("ScoreTest", 3)?;
-        document.serialize_field("addition", &self.extension.to_string())?;
-        document.serialize_field("size", &self.size)?;
-        document.serialize_field("u", &self.uncertainty)?;
-        document.end()
-    }
-}
-
-/// `preferred` (name of the law), `decided`, `summary` (one sentence), `not_excluded` and `excluded_without_fit`
-/// (names), `complete`, `signs`, `friction_change` (of the preferred law), `unseen_damping` (where it has none),
-/// `friction_bound` (where it has no friction), `p` and `scores` (one per model, by which laws are preferred),
-/// `models`, `preparation` (one object, or a list if there are several records), `warnings`.
-impl Serialize for Comparison {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let warnings: Vec<String> = self.warnings().iter().map(ToString::to_string).collect();
-        let mut document = serializer.serialize_struct("Comparison", 15)?;
-        document.serialize_field("preferred", self.preferred().law())?;
-        document.serialize_field("decided", &self.is_conclusive())?;
-        document.serialize_field("summary", &self.headline())?;
-        let left: Vec<&str> = self.not_excluded().map(Identification::law).collect();
-        document.serialize_field("not_excluded", &left)?;
-        document.serialize_field("excluded_without_fit", self.excluded())?;
-        document.serialize_field("complete", &self.is_complete())?;
-        document.serialize_field("signs", self.score_tests())?;
-        document.serialize_field("friction_change", &self.friction_change())?;
-        document.serialize_field("unseen_damping", &self.unseen_damping)?;
-        document.serialize_field("friction_bound", &self.friction_bound())?;
-        document.serialize_field("p", self.p_values())?;
-        document.serialize_field("scores", self.scores())?;
-        document.serialize_field("models", self.identifications())?;
-        match self.records() {
-            [record] => document.serialize_field("preparation", record)?,
-            records => document.serialize_field("preparation", records)?,
+        Self {
+            value: finding.value(),
+            u: finding.uncertainty(),
+            interval_95: finding.interval(0.95),
+            no_interval: finding.without_interval(),
+            degrees_of_freedom: finite(finding.degrees_of_freedom()),
+            unit: finding.parameter().unit(),
+            status: match finding.origin() {
+                Origin::Derived => "derived",
+                Origin::Fitted(EstimateStatus::Undetermined) => "undetermined",
+                Origin::Fitted(EstimateStatus::Fixed) => "fixed",
+                Origin::Fitted(status) if status.is_at_bound() => "at_bound",
+                Origin::Fitted(_) => "fitted",
+            },
+            contributions: finding.budget().iter().flat_map(Budget::contributions).map(part).collect(),
         }
-        document.serialize_field("warnings", &warnings)?;
-        document.end()
+    }
+}
+
+/// A law that was fitted.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct IdentificationDocument<'a> {
+    law: &'a str,
+    /// Findings by name.
+    parameters: BTreeMap<&'a str, &'a Finding>,
+    /// In the unit of the record.
+    rms_residual: f64,
+    /// Number of directions of the parameters that the record determines.
+    rank: usize,
+    /// Time from which the fitted motion of the first record rests (s).
+    stop_time_s: Option<f64>,
+    /// Half swings of the fitted motion of the first record.
+    swings: Option<usize>,
+    /// Corrected criterion of Akaike, all residuals counted.
+    aicc: Option<f64>,
+    /// End of the search for the least squares, in words.
+    outcome: String,
+    /// Of the residuals, in samples.
+    autocorrelation_time: f64,
+    warnings: Vec<String>,
+}
+
+impl<'a> IdentificationDocument<'a> {
+    fn of(found: &'a Identification) -> Self {
+        Self {
+            law: found.law(),
+            parameters: found.findings().iter().map(|finding| (finding.parameter().name(), finding)).collect(),
+            rms_residual: found.rms_residual(),
+            rank: found.fit().rank(),
+            stop_time_s: found.motions().first().and_then(FittedMotion::stop_time),
+            swings: found.motions().first().map(FittedMotion::half_swings),
+            aicc: found.fit().corrected_akaike(),
+            outcome: found.fit().outcome().to_string(),
+            autocorrelation_time: found.autocorrelation_time(),
+            warnings: found.warnings().iter().map(ToString::to_string).collect(),
+        }
+    }
+}
+
+/// A record as it was prepared: values are in `unit`.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct RecordDocument<'a> {
+    /// Begin of the part that was used.
+    from_s: f64,
+    /// End of the part that was used.
+    to_s: f64,
+    samples: usize,
+    rate_hz: f64,
+    /// `displacement`, `velocity` or `acceleration`.
+    quantity: String,
+    unit: &'a str,
+    /// Offset that was not fitted.
+    offset_held_at: Option<f64>,
+    /// Relative standard uncertainty.
+    gain_uncertainty: f64,
+    /// Relative standard uncertainty.
+    clock_uncertainty: f64,
+    /// Time of the release.
+    release_s: Option<f64>,
+    half_swings: usize,
+    first_amplitude: f64,
+    last_amplitude: f64,
+    frequency_hz: f64,
+    /// Standard deviation.
+    noise: f64,
+    /// Step between two values, if it is seen.
+    resolution: Option<f64>,
+    /// Time from which the record rests within its noise.
+    rest_from_s: Option<f64>,
+    /// Number of spikes.
+    spikes: usize,
+    /// Number of samples on the ends of the range.
+    saturated: usize,
+    /// Time at which the offset changes.
+    offset_step_s: Option<f64>,
+    /// Relative change of the period over the record.
+    period_change: Option<f64>,
+    /// Frequency (Hz) and amplitude of each hum.
+    hum_hz_amplitude: Vec<(f64, f64)>,
+    further_releases_s: &'a [f64],
+    /// Time up to which a motion that was interrupted is sound.
+    interrupted_after_s: Option<f64>,
+    /// Samples for each one that was measured: above 1 the record was interpolated.
+    samples_per_measured: usize,
+    second_mode_hz: Option<f64>,
+    /// Amplitude of the second mode over that of the first.
+    second_mode_share: Option<f64>,
+}
+
+impl<'a> RecordDocument<'a> {
+    fn of(record: &'a RecordSummary) -> Self {
+        Self {
+            from_s: record.from,
+            to_s: record.to,
+            samples: record.samples,
+            rate_hz: record.rate,
+            quantity: record.quantity.to_string(),
+            unit: &record.unit,
+            offset_held_at: record.held_offset,
+            gain_uncertainty: record.gain_uncertainty,
+            clock_uncertainty: record.clock_uncertainty,
+            release_s: record.release,
+            half_swings: record.half_swings,
+            first_amplitude: record.amplitudes.0,
+            last_amplitude: record.amplitudes.1,
+            frequency_hz: record.frequency,
+            noise: record.noise,
+            resolution: record.resolution,
+            rest_from_s: record.rest_from,
+            spikes: record.spikes,
+            saturated: record.saturation.map_or(0, |saturation| saturation.samples),
+            offset_step_s: record.offset_step.map(|step| step.time),
+            period_change: record.period_change,
+            hum_hz_amplitude: record.hum.iter().map(|hum| (hum.frequency, hum.amplitude)).collect(),
+            further_releases_s: &record.further_releases,
+            interrupted_after_s: record.interruption.map(|taken| taken.sound_until),
+            samples_per_measured: record.upsampling.map_or(1, |upsampling| upsampling.factor),
+            second_mode_hz: record.second_mode.map(|mode| mode.frequency),
+            second_mode_share: record.second_mode.map(|mode| mode.share),
+        }
+    }
+}
+
+/// Change of the friction with each half cycle.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct ChangeDocument {
+    /// Relative change.
+    per_half_cycle: f64,
+    /// Standard uncertainty of it.
+    uncertainty: f64,
+    /// Relative error of the level over the change.
+    price: f64,
+}
+
+impl ChangeDocument {
+    fn of(change: &FrictionChange) -> Self {
+        Self { per_half_cycle: change.per_half_cycle, uncertainty: change.uncertainty, price: change.price }
+    }
+}
+
+/// Damping beside a friction that the residuals ask for, per mass (1/s).
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct UnseenDampingDocument {
+    per_mass: f64,
+    /// Standard uncertainty of it.
+    uncertainty: f64,
+    /// Largest damping that would not show.
+    largest_unseen: f64,
+    /// Relative error of the level over the damping (s).
+    price: f64,
+}
+
+impl UnseenDampingDocument {
+    fn of(damping: &UnseenDamping) -> Self {
+        Self {
+            per_mass: damping.per_mass,
+            uncertainty: damping.uncertainty,
+            largest_unseen: damping.largest_unseen(),
+            price: damping.price,
+        }
+    }
+}
+
+/// Upper bound of a friction that the records do not show.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct BoundDocument<'a> {
+    name: &'a str,
+    unit: &'a str,
+    /// Upper end of the 95 % interval.
+    upper_95: f64,
+    /// Law that has this friction beside the damping.
+    law: &'a str,
+}
+
+impl<'a> BoundDocument<'a> {
+    fn of(bound: &'a FrictionBound) -> Self {
+        Self { name: &bound.name, unit: &bound.unit, upper_95: bound.upper_95, law: &bound.law }
+    }
+}
+
+/// What the residuals say of a term that was not fitted.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct ScoreTestDocument {
+    addition: String,
+    /// Size that the residuals ask for, in SI units per mass.
+    size: f64,
+    /// Standard uncertainty of it.
+    u: f64,
+}
+
+impl ScoreTestDocument {
+    fn of(test: &ScoreTest) -> Self {
+        Self { addition: test.extension.to_string(), size: test.size, u: test.uncertainty }
+    }
+}
+
+/// Laws that were compared.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+struct ComparisonDocument<'a> {
+    /// Name of the law that is preferred.
+    preferred: &'a str,
+    /// True if the records exclude all other laws and explain this one.
+    decided: bool,
+    /// One sentence.
+    summary: String,
+    /// Laws that the records do not exclude.
+    not_excluded: Vec<&'a str>,
+    /// Laws that were excluded without a fit.
+    excluded_without_fit: &'a [String],
+    /// False if a time limit ended the search.
+    complete: bool,
+    /// Terms that were not fitted, and what the residuals say of them.
+    signs: &'a [ScoreTest],
+    /// Of the friction of the preferred law.
+    friction_change: Option<FrictionChange>,
+    /// Of a preferred law without damping.
+    unseen_damping: &'a Option<UnseenDamping>,
+    /// Of a preferred law without friction.
+    friction_bound: Option<FrictionBound>,
+    /// Of each model against the best one.
+    p: &'a [f64],
+    /// Misfit with twice the rank of each model, by which laws are preferred.
+    scores: &'a [f64],
+    models: &'a [Identification],
+    preparation: Preparations<'a>,
+    warnings: Vec<String>,
+}
+
+/// One record, or a list of several.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+enum Preparations<'a> {
+    One(&'a RecordSummary),
+    Several(&'a [RecordSummary]),
+}
+
+impl<'a> ComparisonDocument<'a> {
+    fn of(comparison: &'a Comparison) -> Self {
+        Self {
+            preferred: comparison.preferred().law(),
+            decided: comparison.is_conclusive(),
+            summary: comparison.headline(),
+            not_excluded: comparison.not_excluded().map(Identification::law).collect(),
+            excluded_without_fit: comparison.excluded(),
+            complete: comparison.is_complete(),
+            signs: comparison.score_tests(),
+            friction_change: comparison.friction_change(),
+            unseen_damping: &comparison.unseen_damping,
+            friction_bound: comparison.friction_bound(),
+            p: comparison.p_values(),
+            scores: comparison.scores(),
+            models: comparison.identifications(),
+            preparation: match comparison.records() {
+                [record] => Preparations::One(record),
+                records => Preparations::Several(records),
+            },
+            warnings: comparison.warnings().iter().map(ToString::to_string).collect(),
+        }
     }
 }

@@ -7,6 +7,7 @@ use crate::inputs::Input;
 
 /// Document of a budget; infinite and unknown numbers are none.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct Document<'a> {
     name: &'a str,
     unit: &'a str,
@@ -19,6 +20,7 @@ struct Document<'a> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct Row<'a> {
     quantity: &'a str,
     estimate: f64,
@@ -38,6 +40,7 @@ struct Row<'a> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct Correlation<'a> {
     first: &'a str,
     second: &'a str,
@@ -67,6 +70,17 @@ impl<'a> Row<'a> {
             share: (!is_correlated).then_some(row.share.clamp(0.0, 1.0)),
             share_with_correlations: row.share,
         }
+    }
+}
+
+#[cfg(feature = "schemars")]
+impl schemars::JsonSchema for Budget {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Budget".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Document::json_schema(generator)
     }
 }
 

@@ -15,6 +15,7 @@ const VALIDATION: f64 = 0.2;
 /// Kind of interval of a given coverage probability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum IntervalKind {
     /// Equal probabilities on both sides.

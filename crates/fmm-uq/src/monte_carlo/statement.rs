@@ -29,6 +29,7 @@ use crate::rounding::{Rounding, percent, significant, suffix};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct TrialStatement {
     /// Name of the result, "result" unless given.

@@ -1,6 +1,7 @@
 //! Manifests of campaigns: options, groups, record sheets, records left out, and the plan of the next tests.
 
 use super::*;
+use crate::host::Host;
 
 #[test]
 fn a_manifest_sets_options_and_groups() {
@@ -10,8 +11,8 @@ fn a_manifest_sets_options_and_groups() {
     let lines = "file,mass,mass_u,normal-load,operator\nrun_00.csv,10,0.01,2,A\nrun_01.csv,10,0.01,2,A\n\
                  run_02.csv,10,0.01,3,B\nrun_03.csv,10,0.01,3,B\nmissing.csv,10,0.01,3,B\n";
     std::fs::write(&manifest, lines).unwrap();
-    let campaign = Campaign::of_manifest(&manifest, law(), Some("operator".to_owned())).unwrap();
-    let rows: Vec<Row> = (0..5).map(|index| Row::of(&campaign, index)).collect();
+    let campaign = Campaign::of_manifest(&manifest, law(), Some("operator".to_owned()), &Host::default()).unwrap();
+    let rows: Vec<Row> = (0..5).map(|index| Row::of(&campaign, index, &Host::default())).collect();
     for (row, coefficient) in rows.iter().zip([0.1, 0.1005, 0.100_333, 0.1]) {
         let found = row.told(("mu", "1")).unwrap_or_else(|| panic!("{row:?}"));
         let off: f64 = (found.value - coefficient).abs();
@@ -54,14 +55,15 @@ fn a_manifest_sets_options_and_groups() {
         "a number has no unit: {text}"
     );
 
-    let missing = Campaign::of_manifest(&manifest, law(), Some("lab".to_owned())).unwrap_err().to_string();
+    let missing =
+        Campaign::of_manifest(&manifest, law(), Some("lab".to_owned()), &Host::default()).unwrap_err().to_string();
     assert!(missing.contains("there is no column `lab`") && missing.contains("operator"), "{missing}");
     for (header, words) in [
         ("file,mass,mass", "runs.csv: the column `mass` stands twice"),
         ("file,force,day", "runs.csv: column `force` is meant for --force, but a campaign is of free vibrations"),
     ] {
         std::fs::write(&manifest, format!("{header}\nrun_00.csv,10,20\n")).unwrap();
-        let refused = Campaign::of_manifest(&manifest, law(), None).unwrap_err().to_string();
+        let refused = Campaign::of_manifest(&manifest, law(), None, &Host::default()).unwrap_err().to_string();
         assert!(refused.contains(words), "{refused}");
     }
 }
@@ -71,8 +73,8 @@ fn a_manifest_sets_options_and_groups() {
 fn both_kinds_of_manifest_say_the_same() {
     let home = folder("kinds");
     let [csv, toml] = three_loads(&home);
-    let table = Campaign::of_manifest(&csv, law(), Some("operator".to_owned())).unwrap();
-    let list = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let table = Campaign::of_manifest(&csv, law(), Some("operator".to_owned()), &Host::default()).unwrap();
+    let list = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     assert_eq!((&list.group, list.sheet.is_some()), (&table.group, true));
     let [from_table, from_list] = [rows(&table), rows(&list)];
     assert!(from_table == from_list && from_table.iter().all(|row| row.found().is_some()), "{from_table:?}");
@@ -97,7 +99,7 @@ fn both_kinds_of_manifest_say_the_same() {
 fn the_next_tests_follow_from_a_campaign() {
     let home = folder("next");
     let [_, toml] = three_loads(&home);
-    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let campaign = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     let rows = rows(&campaign);
     let document = table::document(&rows, &Summary::of(&campaign, &rows, &NOTHING, None)).unwrap();
     let (plan, more) = crate::design::of_campaign(&document).unwrap();
@@ -119,7 +121,7 @@ fn a_record_can_be_left_out() {
     let manifest = home.join("runs.csv");
     std::fs::write(&manifest, "file,exclude\nrun_00.csv,\nrun_01.csv,false\nrun_02.csv,a finger on the mass\n")
         .unwrap();
-    let campaign = Campaign::of_manifest(&manifest, law(), None).unwrap();
+    let campaign = Campaign::of_manifest(&manifest, law(), None, &Host::default()).unwrap();
     let all = rows(&campaign);
     let summary = Summary::of(&campaign, &all, &NOTHING, None);
     assert_eq!((summary.found, summary.counted, summary.excluded.len()), (2, 2, 1));
@@ -130,7 +132,7 @@ fn a_record_can_be_left_out() {
     // The same as a truth value of TOML.
     let list = "[[record]]\nfile = \"run_00.csv\"\n[[record]]\nfile = \"run_02.csv\"\nexclude = true\n";
     std::fs::write(home.join("runs.toml"), list).unwrap();
-    let rows = rows(&Campaign::of_manifest(&home.join("runs.toml"), law(), None).unwrap());
+    let rows = rows(&Campaign::of_manifest(&home.join("runs.toml"), law(), None, &Host::default()).unwrap());
     assert!(rows[1].is_excluded && rows[1].outcome == Outcome::Refused("left out by the manifest".to_owned()));
 }
 
@@ -139,7 +141,7 @@ fn a_record_can_be_left_out() {
 fn the_record_sheet_says_what_is_missing() {
     let home = folder("sheet");
     let [_, toml] = three_loads(&home);
-    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let campaign = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     let rows = rows(&campaign);
     let summary = Summary::of(&campaign, &rows, &NOTHING, None);
     let value = |part: &str, field: &str| {

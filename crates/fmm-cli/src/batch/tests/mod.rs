@@ -83,10 +83,10 @@ fn any_split_gives_the_same_bytes() {
             for index in
                 (part - 1..8).step_by(*parts).filter(|index| Row::is_due(&out, *index, &campaign.entries[*index]))
             {
-                Row::of(&campaign, index).write(&out, index).unwrap();
+                Row::of(&campaign, index, &Host::default()).write(&out, index).unwrap();
             }
         }
-        put_together(&out, &campaign, &NOTHING, true).unwrap();
+        put_together(&out, campaign.clone(), &NOTHING, &Host::default()).unwrap();
         ["campaign.csv", "campaign.json", "campaign.html"].map(|name| std::fs::read(out.join(name)).unwrap())
     };
     let whole = done("whole", &[(1, 1)]);
@@ -134,7 +134,7 @@ fn three_loads(home: &Path) -> [PathBuf; 2] {
 }
 
 fn rows(campaign: &Campaign) -> Vec<Row> {
-    (0..campaign.entries.len()).map(|index| Row::of(campaign, index)).collect()
+    (0..campaign.entries.len()).map(|index| Row::of(campaign, index, &Host::default())).collect()
 }
 
 /// What was excluded, corrected or added since, and what was measured anew, is done again in the same folder, and
@@ -146,12 +146,12 @@ fn what_changed_is_done_again() {
     let (manifest, out) = (home.join("runs.csv"), home.join("out"));
     let listed = |lines: &str| {
         std::fs::write(&manifest, format!("file,exclude,operator\n{lines}")).unwrap();
-        let campaign = Campaign::of_manifest(&manifest, law(), None).unwrap();
+        let campaign = Campaign::of_manifest(&manifest, law(), None, &Host::default()).unwrap();
         campaign.keep(&out).unwrap();
         let due = |index: &usize| Row::is_due(&out, *index, &campaign.entries[*index]);
         let due: Vec<usize> = (0..campaign.entries.len()).filter(due).collect();
         for index in &due {
-            Row::of(&campaign, *index).write(&out, *index).unwrap();
+            Row::of(&campaign, *index, &Host::default()).write(&out, *index).unwrap();
         }
         due
     };

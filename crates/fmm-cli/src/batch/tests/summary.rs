@@ -1,6 +1,9 @@
 //! Summaries of campaigns: consensus, influence, dependences, joint fits, copies and doubts.
 
+use std::ops::ControlFlow;
+
 use super::*;
+use crate::host::Host;
 
 /// Of four records one lies far off: without it the consensus moves most.
 #[test]
@@ -73,7 +76,7 @@ fn what_records_share_does_not_average_out() {
             manifest.extend([format!("run_{run:02}.csv,10,{load},{u}\n")]);
         }
         std::fs::write(home.join("runs.csv"), manifest).unwrap();
-        let campaign = Campaign::of_manifest(&home.join("runs.csv"), law(), None).unwrap();
+        let campaign = Campaign::of_manifest(&home.join("runs.csv"), law(), None, &Host::default()).unwrap();
         let rows = rows(&campaign);
         let summary = Summary::of(&campaign, &rows, &NOTHING, None);
         let text = table::text(&rows, &summary);
@@ -103,7 +106,7 @@ fn what_records_share_does_not_average_out() {
 fn friction_stands_against_load_and_columns() {
     let home = folder("against");
     let [_, toml] = three_loads(&home);
-    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let campaign = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     let rows = rows(&campaign);
     let columns = ["temperature".to_owned(), "operator".to_owned(), "mass".to_owned()];
     let summary = Summary::of(&campaign, &rows, &Asked { against: columns.to_vec(), ..NOTHING }, None);
@@ -136,7 +139,7 @@ fn friction_stands_against_load_and_columns() {
 fn what_differs_by_design_has_no_consensus() {
     let home = folder("design");
     let [_, toml] = three_loads(&home);
-    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let campaign = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     let rows = rows(&campaign);
     let summary = Summary::of(&campaign, &rows, &NOTHING, None);
     let of = |name: &str| summary.quantities.iter().filter(|one| one.name == name).collect::<Vec<_>>();
@@ -162,10 +165,10 @@ fn what_differs_by_design_has_no_consensus() {
 fn a_joint_fit_says_what_it_takes_for_granted() {
     let home = folder("joint");
     let [_, toml] = three_loads(&home);
-    let campaign = Campaign::of_manifest(&toml, law(), None).unwrap();
+    let campaign = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     let rows = rows(&campaign);
     let joint = |campaign: &Campaign, rows: &[Row]| {
-        Outcome::from(Together::of(campaign, rows, false, |_, _| ControlFlow::Continue(())))
+        Outcome::from(Together::of(campaign, rows, false, &Host::default(), |_, _| ControlFlow::Continue(())))
     };
     let found = joint(&campaign, &rows);
     let together = found.found().unwrap_or_else(|| panic!("{found:?}"));
@@ -182,7 +185,7 @@ fn a_joint_fit_says_what_it_takes_for_granted() {
         "{why}"
     );
     let asked = Asked { joint: true, ..NOTHING };
-    let refused = asked.summary(&campaign, &rows).unwrap();
+    let refused = asked.summary(&campaign, &rows, &Host::default()).unwrap();
     assert!(matches!(&refused.joint, Some(Outcome::Refused(said)) if *said == why), "{:?}", refused.joint);
     // A force at one load is none of the records at the others.
     assert!(of("friction_force").joint.is_none() && of("natural_frequency_hz").joint.is_some());
@@ -243,8 +246,12 @@ fn copies_count_once_and_doubts_are_named() {
     let doubted: Vec<&str> = summary.doubted.iter().map(|record| record.file.as_str()).collect();
     assert!(doubted.len() == 1 && doubted[0].ends_with("run_04.csv"), "{:?}", summary.doubted);
     assert!(table::text(&rows, &summary).contains("refused: the same samples as "));
-    give_out(&rows, &summary, true).unwrap();
+    let verdict = |rows: &[Row], summary| {
+        let (campaign, rows) = (campaign.clone(), rows.to_vec());
+        super::super::Found { campaign, rows, summary, written: None }.verdict()
+    };
+    verdict(&rows, summary).unwrap();
     let none = &rows[2..4];
-    let failed = give_out(none, &Summary::of(&campaign, none, &NOTHING, None), true).unwrap_err().to_string();
+    let failed = verdict(none, Summary::of(&campaign, none, &NOTHING, None)).unwrap_err();
     assert!(failed.starts_with("none of 2 records was identified"), "{failed}");
 }
