@@ -1,0 +1,118 @@
+//! The commands of the program `fmm` for Python. What is friendly about them is written in Python, in `fmm_friction`.
+
+use pyo3::prelude::*;
+
+/// Core of the package `fmm_friction`: arguments in, answers out.
+#[pymodule(gil_used = false)]
+mod _core {
+    use std::ffi::OsString;
+    use std::fmt::Display;
+    use std::ops::ControlFlow;
+    use std::path::PathBuf;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::{Mutex, PoisonError};
+
+    use fmm_cli::{Detail, Host, Refusal};
+    use pyo3::prelude::*;
+
+    /// Sees how far a command is, and stops it.
+    #[pyclass(frozen)]
+    #[derive(Default)]
+    struct Watch {
+        message: Mutex<String>,
+        is_stopped: AtomicBool,
+    }
+
+    #[pymethods]
+    impl Watch {
+        #[new]
+        fn new() -> Self {
+            Self::default()
+        }
+
+        /// Last step in words.
+        #[getter]
+        fn message(&self) -> String {
+            self.message.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        }
+
+        /// Stops the command at its next step.
+        fn stop(&self) {
+            self.is_stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    impl Watch {
+        fn see(&self, message: &str) -> ControlFlow<()> {
+            message.clone_into(&mut self.message.lock().unwrap_or_else(PoisonError::into_inner));
+            if self.is_stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+    }
+
+    /// What a command found.
+    #[pyclass(frozen)]
+    struct Answer(Box<dyn fmm_cli::Answer>);
+
+    #[pymethods]
+    impl Answer {
+        fn text(&self, py: Python<'_>) -> PyResult<String> {
+            py.detach(|| self.0.text().map_err(failed)).map_err(|refusal| raised(py, refusal))
+        }
+
+        fn document(&self, py: Python<'_>, full: bool) -> PyResult<String> {
+            let detail = if full { Detail::Full } else { Detail::Brief };
+            py.detach(|| self.0.document(detail).map_err(failed)).map_err(|refusal| raised(py, refusal))
+        }
+
+        fn pictures(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
+            py.detach(|| self.0.pictures().map_err(failed)).map_err(|refusal| raised(py, refusal))
+        }
+
+        fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {
+            py.detach(|| self.0.page().map_err(failed)).map_err(|refusal| raised(py, refusal))
+        }
+
+        #[getter]
+        fn remarks(&self) -> Vec<String> {
+            self.0.remarks().to_vec()
+        }
+
+        /// Why what was found is a failure nevertheless.
+        #[getter]
+        fn failure(&self) -> Option<String> {
+            self.0.verdict().err()
+        }
+    }
+
+    /// Answer of the program to `arguments`, of which the first is its command, by `files` that are not on the disk.
+    #[pyfunction]
+    fn answer(
+        py: Python<'_>,
+        arguments: Vec<OsString>,
+        files: Vec<(PathBuf, Vec<u8>)>,
+        watch: &Watch,
+    ) -> PyResult<Answer> {
+        let arguments = [OsString::from("fmm")].into_iter().chain(arguments);
+        let found = py.detach(|| {
+            let host = Host::default().watched_by(|message| watch.see(message));
+            let host = files.into_iter().fold(host, |host, (name, bytes)| host.with_file(name, bytes));
+            fmm_cli::answer(arguments, &host)
+        });
+        found.map(Answer).map_err(|refusal| raised(py, refusal))
+    }
+
+    /// An answer that cannot be given out.
+    fn failed(error: impl Display) -> Refusal {
+        Refusal { code: "refused", message: error.to_string(), remedy: None }
+    }
+
+    /// The exception that a refusal is.
+    fn raised(py: Python<'_>, refusal: Refusal) -> PyErr {
+        let Refusal { code, message, remedy } = refusal;
+        let class = py.import("fmm_friction.errors").and_then(|module| module.getattr("FmmError"));
+        match class.and_then(|class| class.call1((code, message, remedy))) {
+            Ok(exception) => PyErr::from_value(exception),
+            Err(error) => error,
+        }
+    }
+}
