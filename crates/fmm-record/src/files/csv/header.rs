@@ -99,16 +99,23 @@ pub(super) fn header(
         found.bare = names;
         return Ok(found);
     }
-    let named = last.checked_sub(1).and_then(fitting).filter(|named| are_units(&names) && are_names(named));
-    let Some(named) = named else { return Ok(found.named(names)) };
+    // The units stand below the names, seldom above.
+    let Some(before) = last.checked_sub(1).and_then(fitting) else { return Ok(found.named(names)) };
+    let (named, units) = if are_units(&names) && are_names(&before) {
+        (before, names)
+    } else if are_units(&before) && are_names(&names) && !are_units(&names) {
+        (names, before)
+    } else {
+        return Ok(found.named(names));
+    };
     found.bare = named;
-    for (name, unit) in found.bare.iter().zip(&names) {
+    for (name, unit) in found.bare.iter().zip(&units) {
         // An oscilloscope states the increment of its first column there.
         if let Some((value, _)) = number(unit.as_bytes()) {
             found.stated.push((format!("{} {name}", found.bare[0]), value));
         }
     }
-    found.names = found.bare.iter().zip(&names).map(|(name, unit)| with_unit(name, unit)).collect();
+    found.names = found.bare.iter().zip(&units).map(|(name, unit)| with_unit(name, unit)).collect();
     Ok(found)
 }
 

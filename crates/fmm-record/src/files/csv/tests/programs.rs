@@ -205,6 +205,7 @@ fn lines_above_a_table_that_are_no_header() {
         format!("\"vel\",\"CR6\"\n\"TIME\",\"vel\"\n\"TS\",\"m/s\"\n\"\",\"Smp\"\n{rows}"),
         format!("time\tvel\ns\tm/s\n\tring down\n{}", rows.replace(',', "\t")),
         format!("# time vel\n# [s] [m/s]\n{}", rows.replace(',', " ")),
+        format!("s,m/s\ntime,vel\n{rows}"),
         "\"time\" \"vel\"\n\"1\" 0 1.5\n\"2\" 0.002 2.5\n\"3\" 0.004 -1\n".to_owned(),
     ] {
         let width = text.lines().last().unwrap().split([',', '\t', ' ']).count();
