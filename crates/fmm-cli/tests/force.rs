@@ -351,6 +351,30 @@ fn rotations_and_curves_have_defaults_of_their_own() {
     assert!(!is_done && text.contains("dahl depends on time or position, of which steady states have none"), "{text}");
 }
 
+/// A load that pulls by its sign, an angle that begins anew after a turn and a position that jumps are mended with a
+/// sentence, and the friction is what it is without them.
+#[test]
+fn what_an_instrument_did_is_undone() {
+    let [t, x, _, f] = rubbed();
+    let load = vec![-12.0; t.len()];
+    let mut jumps = by(1e3, &x);
+    jumps[700] = 900.0;
+    let path = table_of("spoiled.csv", &[("t [s]", &t), ("x [mm]", &jumps), ("force_N", &f), ("Fz [N]", &load)]);
+    let said = document(&path, &["--load", "Fz", "--model", "coulomb + linear"]);
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("straight lines between their neighbours stand for these"), "{warnings}");
+    assert!(warnings.contains("\\\"Fz [N]\\\" is negative throughout: its sign was turned"), "{warnings}");
+    assert!((finding(&said, "coefficient").0 / 0.25 - 1.0).abs() < 0.01, "{said}");
+
+    let angle: Vec<f64> = t.iter().map(|t| 200.0 * t + 40.0 * t.sin()).collect();
+    let torque: Vec<f64> = t.iter().map(|t| 0.5 + 0.1 * (200.0 + 40.0 * t.cos()).to_radians()).collect();
+    let wound: Vec<f64> = angle.iter().map(|angle| angle.rem_euclid(360.0)).collect();
+    let path = table_of("wound.csv", &[("t [s]", &t), ("angle [deg]", &wound), ("torque_Nm", &torque)]);
+    let said = document(&path, &["--model", "coulomb + linear"]);
+    assert!(said["warnings"].to_string().contains("begins anew after each turn, 3 times"), "{said}");
+    assert!(is_close(finding(&said, "friction_force").0, 0.5) && is_close(finding(&said, "damping").0, 0.1), "{said}");
+}
+
 /// A law with more parameters than samples leaves the others, and a limit in time gives the best so far.
 #[test]
 fn one_law_that_fails_leaves_the_others() {

@@ -6,6 +6,7 @@
 
 mod columns;
 mod document;
+mod series;
 mod source;
 
 use std::error::Error;

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use clap::Args;
 use fmm_identify::ForceRecord;
-use fmm_model::Rounded;
-use fmm_record::{Column, DataFile, Examination, Label, Quantity, Reader, Record, RecordError, WrittenUnit};
+use fmm_record::{Column, DataFile, Label, Reader, RecordError, WrittenUnit};
 
 use crate::files::named;
 use crate::force::columns::{Columns, FORCE, LOAD, POSITION, Role, VELOCITY};
+use crate::force::series::Series;
 use crate::host::Host;
 use crate::input::Layout;
 
@@ -68,49 +68,6 @@ pub(crate) struct Source {
     rest_speed: Option<f64>,
     #[command(flatten)]
     layout: Layout,
-}
-
-/// A column in SI units, as far as its unit is known.
-struct Series {
-    name: String,
-    values: Vec<f64>,
-    unit: Option<WrittenUnit>,
-}
-
-impl Series {
-    /// The values where a unit that is not known is of this `factor`.
-    fn or_by(&self, factor: f64) -> Vec<f64> {
-        let factor = if self.unit.is_some() { 1.0 } else { factor };
-        self.values.iter().map(|value| factor * value).collect()
-    }
-}
-
-impl Series {
-    /// Sentences about samples at the `times` that do not belong to what was measured.
-    fn doubts(&self, times: &[f64]) -> Vec<String> {
-        let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
-        let interval = (last - first) / times.len().saturating_sub(1).max(1) as f64;
-        let record = Record::new(*first, interval, self.values.clone(), Quantity::Displacement, "m");
-        let Ok(record) = record else { return Vec::new() };
-        let (examination, name) = (Examination::of(&record), &self.name);
-        let saturation = examination.saturation().map(|found| {
-            let levels: Vec<String> = [found.lower, found.upper].into_iter().flatten().map(|at| at.to_string()).collect();
-            format!(
-                "\"{name}\" lies on {} in {} samples: if the range of the instrument ends there, what is beyond is lost",
-                levels.join(" and "),
-                found.samples
-            )
-        });
-        let spike = examination.spikes().first().map(|spike| {
-            let count: usize = examination.spikes().iter().map(|spike| spike.count).sum();
-            let at = Rounded::new(times.get(spike.index).copied().unwrap_or(spike.time), None);
-            format!(
-                "\"{name}\" jumps to and fro in {count} samples, first at {at} s, and these are used as they are: mend them, \
-                 or leave them out by --from and --to"
-            )
-        });
-        saturation.into_iter().chain(spike).collect()
-    }
 }
 
 /// A record, and the columns of its file that it is of.
@@ -178,6 +135,7 @@ impl Source {
         let forces = series(&force, &FORCE, self.force_unit.as_ref())?;
         let said = self.position_unit.as_ref();
         let positions = position.map(|column| series(&column, &POSITION, said)).transpose()?;
+        let positions = positions.map(|positions| positions.going_on(&times, &mut columns.remarks));
         let velocities = velocity.map(|column| series(&column, &VELOCITY, None)).transpose()?;
         let unit = position_unit(positions.as_ref(), velocities.as_ref(), said)?;
         let per_second = said.map_or(1.0, WrittenUnit::factor);
@@ -214,15 +172,14 @@ impl Source {
         columns.velocity = velocities.map(|series| series.name);
         if let Some(load) = &self.load {
             let load = series(&Column::from(load.as_str()), &LOAD, None)?;
-            let tare = self.tare * load.unit.as_ref().map_or(1.0, WrittenUnit::factor);
-            let loads: Vec<f64> = load.values.iter().map(|value| value - tare).collect();
+            let load = load.pressing(self.tare, &mut columns.remarks);
             let negative = |error| {
                 format!(
                     "{error}; take the reading without a load off by --tare, or leave its samples out by --from and \
                      --to"
                 )
             };
-            record = record.under_loads(&loads).map_err(negative)?;
+            record = record.under_loads(&load.values).map_err(negative)?;
             columns.load = Some(load.name);
         }
         for name in &self.channels {

@@ -208,6 +208,12 @@ const SUFFIXES: &str = "\
 /// Suffixes that are a unit behind a word for its quantity only: they may be a medium, a mass centre, a measured value.
 const DOUBTFUL: &str = "m cm km g mg ft";
 
+/// Suffixes that are a unit behind a word for force or torque only.
+const OF_FORCES: &str = "N mN Nm Nmm Ncm mNm µNm uNm kNm";
+
+/// Symbols of forces and torques, which are words for them in front of such a suffix.
+const FORCES: &str = "f fx fy fz ft fn m mx my mz tau";
+
 /// Lengths and angles that a suffix counts per time.
 const PER_TIME: &str = "m mm cm um µm μm nm km ft rad mrad urad deg mdeg rev";
 
@@ -216,10 +222,13 @@ fn behind_underscore(bare: &str, word: Word) -> Option<WrittenUnit> {
     let parts: Vec<&str> = bare.split('_').map(str::trim).collect();
     let lower: Vec<String> = parts.iter().map(|part| part.to_lowercase()).collect();
     let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
+    let is_force = word.quantity == Some(Quantity::Force) || lower.first().is_some_and(|first| is_in(FORCES, first));
     let (base, time) = match lower[..] {
         [.., _, base, "per", time @ ("s" | "sec" | "second" | "min" | "h" | "s2" | "s^2" | "s²")]
         | [.., _, base, time @ ("s" | "sec" | "s2" | "s^2" | "s²")] => (base, time),
         [.., _, base, "per", "s", "2"] | [.., _, base, "s", "2"] => (base, "s2"),
+        [.., _, "n", "m"] if is_force => return "N m".parse().ok(),
+        [_, .., _] if is_force && is_in(OF_FORCES, parts.last()?) => return parts.last()?.parse().ok(),
         [_, .., _] => return last_part(parts.last()?, word),
         _ => return None,
     };
@@ -237,7 +246,7 @@ fn last_part(written: &str, word: Word) -> Option<WrittenUnit> {
         "degps" => "deg/s",
         "rads2" | "radps2" => "rad/s2",
         _ if matches!(written, "V" | "mV" | "uV") => written,
-        _ if written == "kN" || (written == "N" && word.quantity == Some(Quantity::Force)) => written,
+        "kn" if written == "kN" => written,
         _ if is_in(SUFFIXES, lower) => lower,
         _ if is_in(DOUBTFUL, lower) => {
             return lower
@@ -297,6 +306,14 @@ mod tests {
             ("gyro_V", 1.0, "V"),
             ("out_mV", 1e-3, "V"),
             ("force_N", 1.0, "N"),
+            ("force_mN", 1e-3, "N"),
+            ("torque_Nm", 1.0, "N m"),
+            ("F_N", 1.0, "N"),
+            ("Fx_N", 1.0, "N"),
+            ("M_Nm", 1.0, "N m"),
+            ("Torque_N_m", 1.0, "N m"),
+            ("torque_mNm", 1e-3, "N m"),
+            ("torque_Nmm", 1e-3, "N m"),
             ("encoder_counts", 1.0, "counts"),
         ] {
             assert_eq!(si(name), Some((factor, unit)), "{name}");
@@ -326,6 +343,7 @@ mod tests {
             "disp_in",
             "v_g",
             "k_N",
+            "k_Nm",
             "v_v",
             "m_s",
             "v_s",
