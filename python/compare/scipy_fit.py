@@ -2,9 +2,9 @@
 
     python compare/scipy_fit.py [RECORD.csv]
 
-The model of both is m x'' + c x' + k x + F sgn(x') = 0 with six unknowns: friction, damping and stiffness per mass, initial
-position and velocity, and an offset of the sensor. SciPy integrates each half swing by ``solve_ivp``, whose event is the
-reversal at which the mass sticks or turns, and minimises by ``least_squares``.
+The model of both is m x'' + c x' + k x + F sgn(x') = 0 with six unknowns: friction, damping and stiffness per mass,
+initial position and velocity, and an offset of the sensor. SciPy integrates each half swing by ``solve_ivp``, whose
+event is the reversal at which the mass sticks or turns, and minimises by ``least_squares``.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
-from scipy.optimize import least_squares  # type: ignore[import-untyped]
+from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
 
 import fmm_friction as fmm
 
@@ -42,7 +42,7 @@ def velocity(parameters: Array, t: Array) -> Array:
             return [y[1], -stiffness * y[0] - damping * y[1] - friction * direction]
 
         def turn(_: float, y: Array, direction: float = direction) -> float:
-            return direction * y[1]
+            return float(direction * y[1])
 
         turn.terminal, turn.direction = True, -1  # type: ignore[attr-defined]
         inside = (t >= now) & (t <= end)
@@ -51,19 +51,20 @@ def velocity(parameters: Array, t: Array) -> Array:
         if not len(swing.t_events[0]):
             break
         now, x, v = swing.t_events[0][0], swing.y_events[0][0][0], 0.0
-    return found + offset
+    shifted: Array = found + offset
+    return shifted
 
 
 def by_scipy(t: Array, v: Array) -> tuple[float, float]:
     """Coefficient of friction and its standard uncertainty."""
-    # Start values by eye: frequency from the zero crossings, amplitude from the largest velocity, friction from the loss.
+    # Start values by eye: the frequency from zero crossings, the amplitude from the largest velocity.
     crossings = t[:-1][np.diff(np.sign(v)) != 0]
     omega = np.pi / np.median(np.diff(crossings[:6]))
     start = np.array([0.3, 0.05, omega**2, abs(v).max() / omega * 1.1, v[0], 0.0])
     scale = np.array([0.1, 0.1, omega**2, 0.01, 0.01, 1e-4])
     fit = least_squares(lambda p: velocity(p, t) - v, start, x_scale=scale, xtol=1e-10, ftol=1e-10)
     variance = 2 * fit.cost / (len(t) - len(start)) * np.linalg.inv(fit.jac.T @ fit.jac)
-    return fit.x[0] * MASS / LOAD, np.sqrt(variance[0, 0]) * MASS / LOAD
+    return float(fit.x[0]) * MASS / LOAD, float(np.sqrt(variance[0, 0])) * MASS / LOAD
 
 
 def by_fmm(t: Array, v: Array) -> fmm.Identification:
@@ -82,11 +83,10 @@ def main() -> None:
     end = time.perf_counter()
     lines = [sum(len(inspect.getsourcelines(part)[0]) for part in parts) for parts in ((velocity, by_scipy), (by_fmm,))]
     finding = found.findings["mu"]
-    rms = found.document["models"][0]["rms_residual"]
+    rms, correlation = found.model["rms_residual"], found.model["autocorrelation_time"]
     print(f"SciPy         {lines[0]:3} lines  {middle - begun:7.2f} s  mu = {mu:.5f}, u = {u:.5f}")
     print(f"fmm_friction  {lines[1]:3} lines  {end - middle:7.2f} s  mu = {finding.value:.5f}, u = {finding.u:.5f}")
-    print(f"rms residual of the latter: {rms:.3e} m/s; its residuals keep their sign over", end=" ")
-    print(f"{found.document['models'][0]['autocorrelation_time']:.1f} samples, which the former takes as independent")
+    print(f"rms residual {rms:.3e} m/s, correlated over {correlation:.1f} samples, which SciPy takes as independent")
     print("what SciPy does not say:")
     said = [
         f"95 % interval with degrees of freedom: {finding.interval_95}",

@@ -6,7 +6,7 @@ import html
 import json
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,6 +33,7 @@ class Finding:
         interval_95: ends of the 95 % interval, in ``unit``.
         unit: SI unit, ``1`` for a number without one.
         status: ``fitted``, ``derived``, ``fixed``, ``at_bound`` or ``undetermined``; ``None`` where it is not told.
+        shares: shares of u² by source (1), the largest first; empty where they are not told.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Finding:
     interval_95: tuple[float, float] | None
     unit: str
     status: str | None = None
+    shares: Mapping[str, float] = field(default_factory=dict)
 
     def __float__(self) -> float:
         """The value alone."""
@@ -219,7 +221,9 @@ def _finding(name: str, told: dict[str, Json]) -> Finding:
     """The finding that a document tells."""
     ends = told.get("interval_95")
     interval = None if ends is None else (ends[0], ends[1])
-    return Finding(name, told["value"], told["u"], interval, told["unit"], told.get("status"))
+    parts = sorted(told.get("contributions", []), key=lambda part: part["share"], reverse=True)
+    shares = {part["source"]: part["share"] for part in parts}
+    return Finding(name, told["value"], told["u"], interval, told["unit"], told.get("status"), shares)
 
 
 class _Fitted(Result):
@@ -248,10 +252,19 @@ class Identification(_Fitted):
 
     def findings_of(self, law: str) -> Findings:
         """Findings of a law that was fitted."""
-        models = {model["law"]: model for model in self.document["models"]}
+        parameters = self._model(law)["parameters"]
+        return Findings({name: _finding(name, told) for name, told in parameters.items()})
+
+    @property
+    def model(self) -> dict[str, Json]:
+        """The preferred law as the document has it: residuals, rank, outcome and the like."""
+        return self._model(self.preferred)
+
+    def _model(self, law: str) -> dict[str, Json]:
+        models: dict[str, dict[str, Json]] = {model["law"]: model for model in self.document["models"]}
         if law not in models:
             raise KeyError(f"there is no model {law!r}; there are {', '.join(models)}")
-        return Findings({name: _finding(name, told) for name, told in models[law]["parameters"].items()})
+        return models[law]
 
     @property
     def summary(self) -> str:
