@@ -58,7 +58,4 @@ def test_the_examples_run(tmp_path, monkeypatch):
         if "read_csv" not in block:
             names.update(of_blocks)
         exec(block, names)
-        if 'm/s", law="coulomb_viscous' in block:
-            assert names["compared"].preferred
     assert len(BLOCKS) >= 7 and names["campaign"].consensus["mu"].value > 0
-    assert fmm.FmmError is names["fmm"].FmmError

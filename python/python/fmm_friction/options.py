@@ -16,70 +16,70 @@ Path = str | os.PathLike[str]
 class RecordOptions(TypedDict, total=False):
     """Which channel of a file, what it measured, and which part of it is used."""
 
-    channel: str | int
+    channel: str | int | None
     """Name or number (from 0) of the channel with the motion; of files."""
-    time: str | int
+    time: str | int | None
     """Name or number of the channel with the times; of files."""
-    rate: float
+    rate: float | None
     """Sampling rate (Hz), where there are no times."""
-    rate_u: float
+    rate_u: float | None
     """Relative standard uncertainty of the rate."""
-    time_unit: str
+    time_unit: str | None
     """Unit of the times, such as ``ms``."""
-    skip: int
+    skip: int | None
     """Lines to pass over at the top of a text."""
-    table: int
+    table: int | None
     """Number of the table in the file, from 1."""
-    repair: bool
+    repair: bool | None
     """Use a text around its damaged lines."""
-    quantity: str
+    quantity: str | None
     """``displacement``, ``velocity`` or ``acceleration``."""
-    unit: str
+    unit: str | None
     """Unit of the values, such as ``mm/s``, ``rad`` or ``V``."""
-    scale: float
+    scale: float | None
     """Factor that turns the values into ``unit``."""
-    from_: float
+    from_: float | None
     """Begin of the part that is used (s)."""
-    to: float
+    to: float | None
     """End of the part that is used (s)."""
-    mode: int | str
+    mode: int | str | None
     """The mode that is meant: 1 is the strongest, ``"150Hz"`` the one nearest to that frequency."""
 
 
 class MachineOptions(TypedDict, total=False):
     """Machine, laws and sensor."""
 
-    law: str | list[str]
+    law: str | list[str] | None
     """Laws to compare, such as ``["coulomb", "berger+quadratic"]`` or ``"all"``; without it a search."""
-    hold: Mapping[str, float]
+    hold: Mapping[str, float] | None
     """Parameters to hold at a value, such as ``{"stribeck.exponent": 2}``."""
-    time_limit: float
+    time_limit: float | None
     """Time (s) after which a search begins no further law."""
-    pendulum: bool | float
+    pendulum: bool | float | None
     """The machine is a pendulum; a number is the length (m) of the arc of one radian."""
-    mass: float
+    mass: float | None
     """Moving mass (kg)."""
-    mass_u: float
+    mass_u: float | None
     """Standard uncertainty of the mass (kg)."""
-    stiffness: float
+    stiffness: float | None
     """Stiffness (N/m)."""
-    stiffness_u: float
+    stiffness_u: float | None
     """Standard uncertainty of the stiffness (N/m)."""
-    damping: float
+    damping: float | None
     """The machine's own linear damping (N s/m)."""
-    damping_u: float
+    damping_u: float | None
     """Standard uncertainty of the damping (N s/m)."""
-    steady: float
+    steady: float | None
     """Relative standard uncertainty of the change of the friction with each half cycle."""
-    normal_load: float
+    normal_load: float | None
     """Normal load on the contact (N)."""
-    normal_load_u: float
+    normal_load_u: float | None
     """Standard uncertainty of the normal load (N)."""
-    scale_u: float
+    scale_u: float | None
     """Relative standard uncertainty of the scale of the values."""
-    low_pass: int | str | tuple[int, float]
+    low_pass: int | str | tuple[int, float] | None
     """Order, or order and corner (Hz), of the low-pass filter of the sensor."""
-    delay: float
+    delay: float | None
     """Time (s) by which the sensor is late."""
 
 
@@ -90,73 +90,73 @@ class FreeOptions(RecordOptions, MachineOptions, total=False):
 class IdentifyOptions(FreeOptions, total=False):
     """Keywords of :func:`identify` and :func:`compare` beside arrays that drive the machine."""
 
-    mobility: tuple[float, float]
+    mobility: tuple[float, float] | None
     """Band (Hz) in which lines of the mobility are fitted in place of the motion after an impact."""
-    posterior: bool
+    posterior: bool | None
     """Draw from the posterior of the preferred law; in builds with the feature ``posterior``."""
 
 
 class ForceOptions(TypedDict, total=False):
     """Keywords of :func:`force` beside its columns."""
 
-    time: str | int
+    time: str | int | None
     """Name or number of the column of times; of files."""
-    time_unit: str
+    time_unit: str | None
     """Unit of the times, such as ``ms``."""
-    rate: float
+    rate: float | None
     """Sampling rate (Hz), where there are no times."""
-    from_: float
+    from_: float | None
     """Begin of the part that is used (s)."""
-    to: float
+    to: float | None
     """End of the part that is used (s)."""
-    turn_sign: bool
+    turn_sign: bool | None
     """The force was measured as the reaction of the contact."""
-    tare: float
+    tare: float | None
     """Reading of the load without a load, in its unit."""
-    average: float
+    average: float | None
     """Time (s) over which the channels are averaged."""
-    position_unit: str
+    position_unit: str | None
     """Unit of the positions, such as ``mm``; m unless given. That of velocities is this one per second."""
-    force_unit: str
+    force_unit: str | None
     """Unit of the forces, such as ``N m``; N unless given."""
-    rest_speed: float
+    rest_speed: float | None
     """Speed (m/s) up to which the contact counts as at rest."""
-    skip: int
+    skip: int | None
     """Lines to pass over at the top of a text."""
-    table: int
+    table: int | None
     """Number of the table in the file, from 1."""
-    repair: bool
+    repair: bool | None
     """Use a text around its damaged lines."""
-    model: str | list[str]
+    model: str | list[str] | None
     """Models to fit, such as ``["coulomb+linear", "dahl"]``."""
-    hold: Mapping[str, float]
+    hold: Mapping[str, float] | None
     """Parameters to hold at a value."""
-    longest_delay: float
+    longest_delay: float | None
     """Longest delay (s) between motion and force that is looked for."""
-    time_limit: float
+    time_limit: float | None
     """Time (s) after which the fits are stopped."""
 
 
 class FrfOptions(TypedDict, total=False):
     """Keywords of :func:`frf` beside its channels."""
 
-    quantity: str
+    quantity: str | None
     """``displacement``, ``velocity`` or ``acceleration`` of the response."""
-    force_scale: float
+    force_scale: float | None
     """Factor that turns the force into N."""
-    response_scale: float
+    response_scale: float | None
     """Factor that turns the response into SI units."""
-    rate: float
+    rate: float | None
     """Sampling rate (Hz), where there are no times."""
-    skip: int
+    skip: int | None
     """Lines to pass over at the top of a text."""
-    table: int
+    table: int | None
     """Number of the table in the file, from 1."""
-    repair: bool
+    repair: bool | None
     """Use a text around its damaged lines."""
-    window: str
+    window: str | None
     """``none``, ``force``, ``exponential``, ``impact``, ``hann`` or ``symmetric-hann``."""
-    exponential_end: float
+    exponential_end: float | None
     """Value of an exponential window at the end of the record (1)."""
 
 
