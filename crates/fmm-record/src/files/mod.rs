@@ -65,15 +65,15 @@ pub fn open(path: impl AsRef<Path>) -> Result<DataFile, RecordError> {
 /// |---|---|
 /// | separator | semicolon, tab or bar if the rows have one, else blanks between nothing but numbers, else comma; what a first line `sep=;` says |
 /// | first row | the first line with as many fields as the last ones have, and numbers where they have numbers |
-/// | names | the line above the first row, with the units of a row of units; or a comment there, if it names the time |
+/// | names | the line above the first row, with the units of a row of units below or above it, also over a row of remarks; or a comment there, if it names the time |
 /// | decimal comma | where it is used throughout, between quotes if commas separate columns; one column of whole numbers with commas is refused if it may be two |
 /// | thousands | points, commas, blanks or apostrophes between groups of three digits, beside another decimal mark |
-/// | time of day | `10:00:00.002` with or without a date; the record begins at 0 s, as it does by the day numbers of spreadsheets and MATLAB |
+/// | time of day | `10:00:00.002` with or without a date; the record begins at 0 s, as it does by the day numbers of spreadsheets and MATLAB, by ms, µs or ns since 1970, and by durations such as `0.002 sec` |
 /// | time | the column called `t`, `time`, `Zeit`, `timestamp` or the like, in seconds unless its name tells another unit (ms, µs, ns, min, h, in any usual spelling); else the first column, if it increases uniformly, but not by whole numbers without a unit |
 /// | channel | the first column that is neither the time nor called a number of samples |
 ///
-/// If no column is time, a number above the table that is called an interval or a rate (`Sample Interval`,
-/// `Delta_X`) tells the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
+/// If no column is time, a number above the table or in a comment there that is called an interval or a rate (`Sample
+/// Interval`, `Delta_X`, `Sample rate: 0.5 kHz`) tells the rate. With a rate, time stamps are not looked at, and the record begins at 0 s.
 ///
 /// # MATLAB (versions 4 to 7.3, HDF5) and NumPy (npy, npz)
 ///
