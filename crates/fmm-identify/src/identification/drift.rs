@@ -6,6 +6,7 @@ use fmm_fit::FTest;
 
 use crate::experiment::Experiment;
 use crate::experiment::nuisance::{DRIFT, Nuisance};
+use crate::finding::Finding;
 use crate::identification::Identification;
 use crate::problem::Problem;
 use crate::problem::tangent::Tangent;
@@ -74,4 +75,57 @@ pub(crate) fn as_fitted(decays: &[Experiment], disturbances: &[Vec<Nuisance>]) -
         decay.clone().beside(missing)
     };
     decays.iter().zip(disturbances).map(further).collect()
+}
+
+/// True for a fit beside a drift of which the intervals contain zero: what looked like one beside a simple law is
+/// friction that changes with speed.
+pub(crate) fn drifts_in_vain(found: &Identification) -> bool {
+    let is_seen = |finding: &Finding| finding.interval(0.95).is_none_or(|(low, high)| low > 0.0 || high < 0.0);
+    let is_drift = |finding: &&Finding| finding.parameter().name().starts_with("drift");
+    let mut drifts = found.findings().iter().filter(is_drift).peekable();
+    drifts.peek().is_some() && !drifts.any(is_seen)
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::{LawFamily, Stribeck};
+    use fmm_model::{Damping, Oscillator};
+    use fmm_record::{Quantity, Record};
+    use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::Inquiry;
+    use crate::experiment::Preparation;
+    use crate::machine::Machine;
+    use crate::warning::Warning;
+
+    /// A decay by Stribeck friction, of which Coulomb and viscous friction leave a little more than the noise.
+    fn decay(seed: u64) -> Experiment {
+        let damping = Damping::linear(0.0716).unwrap();
+        let machine = Oscillator::new(1.0, 593.9).unwrap().with_damping(damping);
+        let law = Stribeck::at(&[0.1106, 0.1634, 0.02615, 2.0, 0.0]).unwrap();
+        let scenario = Scenario::new(machine, law, 1.0).unwrap().starting_at(0.010_086_5, 0.0).unwrap();
+        let mut motion = Trajectory::new();
+        simulate_into::<Stribeck, _>(&scenario, &Sampling::uniform(1e-3, 2500).unwrap(), None, &mut motion).unwrap();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let values = motion.position().values().iter().map(|x| x + 1.04e-5 * draw()).collect();
+        let record = Record::new(0.0, 1e-3, values, Quantity::Displacement, "m").unwrap();
+        Experiment::ring_down(&record, &Preparation::default()).unwrap()
+    }
+
+    #[test]
+    fn friction_that_changes_with_speed_is_no_drift() {
+        let (decays, machine) = ([decay(1)], Machine::per_unit_mass());
+        let inquiry = Inquiry::of(&machine, &decays);
+        // Beside coulomb_viscous the record shows a drift, which the preferred law needs no more.
+        assert!(drifts_in_vain(inquiry.search_here(&decays, true, None).unwrap().preferred()));
+        let found = inquiry.search().unwrap();
+        let preferred = found.preferred();
+        assert!(preferred.findings().iter().all(|finding| !finding.parameter().name().starts_with("drift")));
+        assert!(!found.warnings().iter().any(|warning| matches!(warning, Warning::Drift)));
+    }
 }

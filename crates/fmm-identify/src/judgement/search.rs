@@ -12,6 +12,7 @@ use crate::fit::stages::Begin;
 use crate::friction_curve::projection::ShownFriction;
 use crate::identification::Identification;
 use crate::identification::beside::closest;
+use crate::identification::drift::drifts_in_vain;
 use crate::judgement::Judgement;
 use crate::judgement::change::{asks_for_change, with_change};
 use crate::judgement::comparison::{Comparison, explains};
@@ -50,17 +51,28 @@ impl Inquiry<'_> {
                 "a search is for vibrations; compare candidates for a force along a motion",
             ));
         };
-        self.on_pool(|| self.search_here(decays))
+        self.on_pool(|| {
+            let end = self.end();
+            let found = self.search_here(decays, true, end)?;
+            if drifts_in_vain(found.preferred()) { self.search_here(decays, false, end) } else { Ok(found) }
+        })
     }
 
-    fn search_here(&self, decays: &[Experiment]) -> Result<Comparison, IdentifyError> {
-        let run = Run { inquiry: self, decays, beside: &Terms::NONE, options: &self.options, end: self.end() };
+    /// The search of laws for `decays` until the `end`, beside a drift where they show one and may.
+    pub(crate) fn search_here(
+        &self,
+        decays: &[Experiment],
+        may_drift: bool,
+        end: Option<Instant>,
+    ) -> Result<Comparison, IdentifyError> {
+        let run = Run { inquiry: self, decays, beside: &Terms::NONE, options: &self.options, end };
         if !self.held.is_empty() {
             self.require_known(decays)?;
         }
         let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, Start::Records)?;
         run.follow_special_cases(&mut found);
-        let drifting = closest(found.identifications.iter()).and_then(|found| found.with_drift(decays));
+        let closest = closest(found.identifications.iter()).filter(|_| may_drift);
+        let drifting = closest.and_then(|found| found.with_drift(decays));
         let mut decays = decays;
         if let Some(drifting) = &drifting {
             let with_drift =
