@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from . import results
 from ._run import Call, Progress, document, options, paths, table
-from .options import ForceOptions, FreeOptions, FrfOptions, IdentifyOptions, MachineOptions, Path, RecordOptions, check
+from .options import ForceOptions, FreeOptions, FrfOptions, IdentifyOptions, Path, RecordOptions, check
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -415,20 +415,3 @@ def formats() -> list[dict[str, Any]]:
     """The file formats that are read."""
     found: list[dict[str, Any]] = json.loads(Call(["formats"]).answer().document(False))["formats"]
     return found
-
-
-#: Kinds of keywords, for those who write functions around these.
-__all__ = [
-    "MachineOptions",
-    "backbone",
-    "batch",
-    "budget",
-    "compare",
-    "design",
-    "force",
-    "formats",
-    "frf",
-    "identify",
-    "laws",
-    "simulate",
-]
