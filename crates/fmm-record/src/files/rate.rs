@@ -6,13 +6,15 @@ use crate::units::word::is_in;
 
 /// Names of scalars that hold a rate (Hz), plain.
 const RATES: &str = "\
-    fs rate actualrate samplerate samplingrate samplefrequency samplingfrequency fsample fsampling srate sfreq scanrate \
-    datarate outputdatarate outputrate storagerate odr measuringrate acquisitionrate messrate abtastrate abtastfrequenz framerate fps";
+    fs rate actualrate samplerate samplingrate samplefrequency samplingfrequency fsample fsampling srate sfreq \
+    scanrate datarate outputdatarate outputrate storagerate odr measuringrate acquisitionrate messrate \
+    abtastrate abtastfrequenz framerate fps";
 
 /// Names of scalars that hold an interval (s), plain.
 const INTERVALS: &str = "\
-    dt ts deltat deltax increment tinterval abtastintervall abtastzeit xincrement xinc xincr tinc tsample sampletime samplingtime sampleinterval \
-    samplinginterval sampleperiod samplingperiod timeinterval timestep timeincrement hresolution";
+    dt ts deltat deltax increment tinterval abtastintervall abtastzeit xincrement xinc xincr tinc tsample \
+    sampletime samplingtime sampleinterval samplinginterval sampleperiod samplingperiod timeinterval timestep \
+    timeincrement hresolution";
 
 /// Names of scalars that tell of how many samples one was kept, plain.
 const KEPT: &str = "decimation decimationfactor downsampling downsample downsamplingfactor";
@@ -65,7 +67,8 @@ pub(crate) fn stated<'a>(
     }
     if let (Some((rate, _, rated)), Some((name, value))) = (&found, kept) {
         let what = format!(
-            "\"{rated}\" says {rate} Hz, and \"{name}\" says {value}, by which the samples may or may not be fewer; give the rate"
+            "\"{rated}\" says {rate} Hz, and \"{name}\" says {value}, by which the samples may or may not be fewer; \
+             give the rate"
         );
         return Err(RecordError::time(None, what));
     }

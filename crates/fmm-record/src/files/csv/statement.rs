@@ -4,8 +4,8 @@ use super::fields::{Row, Separator, number, text};
 use crate::units::label::without_groups;
 use crate::units::seconds_in;
 
-/// The names and numbers that a line states: `Sample Rate: 500 Hz`, `dt [ms];2`, `Sample Interval,0.002,s`. Numbers with
-/// a unit of time or frequency are in s or Hz; with any other they state nothing.
+/// The names and numbers that a line states: `Sample Rate: 500 Hz`, `dt [ms];2`, `Sample Interval,0.002,s`. Numbers
+/// with a unit of time or frequency are in s or Hz; with any other they state nothing.
 pub(super) fn statements(line: &[u8], separator: Separator) -> Vec<(String, f64)> {
     let row = Row::of(line, separator);
     let fields: Vec<String> = (0..row.len()).map(|column| text(row.field(column))).collect();
