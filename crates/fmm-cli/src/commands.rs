@@ -211,6 +211,8 @@ fn manual(folder: &std::path::Path) -> Result<(), Box<dyn Error>> {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
 
     #[test]
@@ -243,5 +245,25 @@ mod tests {
         assert_eq!(code(&["fmm", "identify", "no such file.csv"]), format!("{:?}", ExitCode::FAILURE));
         assert_eq!(code(&["fmm", "identify", "--no-such-option"]), format!("{:?}", ExitCode::from(2)));
         assert_eq!(code(&["fmm", "--help"]), format!("{:?}", ExitCode::SUCCESS));
+    }
+
+    /// A host hears how far a fit is, ends it, and gives files that are on no disk.
+    #[test]
+    fn a_host_watches_stops_and_gives_files() {
+        let told = std::sync::Mutex::new(Vec::new());
+        let line = ["fmm", "identify", "run", "--law", "coulomb"];
+        let run = include_bytes!("../../../examples/data/flexure/run_1.csv");
+        let host = Host::default().with_file("run", run.to_vec()).watched_by(|step| {
+            told.lock().unwrap().push(step.to_owned());
+            ControlFlow::Continue(())
+        });
+        let found = answer(line, &host).unwrap_or_else(|refusal| panic!("{refusal:?}"));
+        assert!(found.text().unwrap().starts_with("run, channel velocity"));
+        assert!(told.lock().unwrap().iter().any(|step| step.starts_with("coulomb: step ")), "{told:?}");
+        let host = Host::default().with_file("run", run.to_vec()).watched_by(|_| ControlFlow::Break(()));
+        let refusal = answer(line, &host).err().expect("a stopped fit is no answer");
+        assert!(refusal.message.contains("stopped before the end"), "{refusal:?}");
+        let refusal = answer(["fmm", "identify", "run"], &Host::default()).err().expect("there is no such file");
+        assert_eq!(refusal.code, "unreadable");
     }
 }
