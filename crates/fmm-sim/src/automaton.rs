@@ -4,9 +4,10 @@ use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::error::SimulationError;
 use crate::mechanics::{
-    Curve, Forcing, Levels, Piece, SEARCH_BUDGET, SteadyReserve, crossing, first_zero, holds_for_good, load, rounding,
+    Curve, Forcing, Levels, Piece, SEARCH_BUDGET, SteadyReserve, crossing, first_zero, holds_for_good, load,
+    normal_load, rounding,
 };
-use crate::scenario::{Direction, Event, EventKind, Mode, Scenario, State};
+use crate::scenario::{Direction, Event, EventKind, LoadOverPosition, Mode, Scenario, State};
 use crate::trajectory::{Power, Recorder};
 
 /// Tolerance of the load at which the acceleration vanishes, relative to the friction force.
@@ -70,6 +71,7 @@ pub(crate) struct Contact<'a, D, V> {
     pub(crate) oscillator: &'a Oscillator<D>,
     pub(crate) levels: V,
     pub(crate) belt: D,
+    load_over_position: LoadOverPosition<D>,
     budget: usize,
 }
 
@@ -83,7 +85,13 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         if !most.value().is_finite() {
             return Err(SimulationError::NotFinite { time: 0.0 });
         }
-        Ok(Self { oscillator: scenario.oscillator(), levels, belt: drive.belt(), budget: SEARCH_BUDGET })
+        let load_over_position = scenario.load_over_position();
+        if !load_over_position.is_constant() && (levels.has_branches() || drive.has_belt()) {
+            let what = "a normal load over the position beside a moving counterface or a law of two branches";
+            return Err(SimulationError::NotSupported { engine: "runge_kutta", what });
+        }
+        let oscillator = scenario.oscillator();
+        Ok(Self { oscillator, levels, belt: drive.belt(), load_over_position, budget: SEARCH_BUDGET })
     }
 
     fn load(&self, piece: &Piece<D>, time: D, position: D, velocity: D) -> Curve<'static, D> {
@@ -102,9 +110,14 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         self.load(phase.piece, time, position + velocity * (time - phase.time), velocity)
     }
 
-    /// Static friction force (N) at `time`, and its slope (N/s).
-    fn static_force(&self, piece: &Piece<D>, time: D) -> (D, D) {
-        let (load, slope) = piece.normal_load(time);
+    /// Normal load (N) at `time` in `state`, and its slope at constant velocity (N/s).
+    fn normal_load(&self, piece: &Piece<D>, time: D, state: State<D>) -> (D, D) {
+        normal_load(piece, self.load_over_position, time, state)
+    }
+
+    /// Static friction force (N) at `time` in `state`, and its slope (N/s).
+    fn static_force(&self, piece: &Piece<D>, time: D, state: State<D>) -> (D, D) {
+        let (load, slope) = self.normal_load(piece, time, state);
         (load * self.levels.breakaway(), slope * self.levels.breakaway())
     }
 
@@ -133,7 +146,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             }
             let moving = self.load(piece, time, state.position, state.velocity);
             let drive = moving.now().value() * direction.sign();
-            let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, D::from(relative.abs()));
+            let (gaining, losing) = self.branch_forces(self.normal_load(piece, time, state).0, D::from(relative.abs()));
             let mode = if drive > gaining.value() {
                 Mode::Gaining(direction)
             } else if drive < losing.value() {
@@ -143,7 +156,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             };
             return (mode, load);
         }
-        let (held, held_slope) = self.static_force(piece, time);
+        let (held, held_slope) = self.static_force(piece, time, state);
         let (held, held_slope) = (held.value(), held_slope.value());
         // Within rounding of the level, the rate of change of the load decides.
         let direction = Direction::of(if load.abs() <= rounding { rate } else { load });
@@ -152,7 +165,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             growing
         } else {
             growing && load.abs() >= held
-                || load.abs() > held && self.is_ahead(load, piece.normal_load(time).0, state, direction)
+                || load.abs() > held && self.is_ahead(load, self.normal_load(piece, time, state).0, state, direction)
         };
         (if slips { self.sliding(direction) } else { Mode::Stick }, load)
     }
@@ -206,7 +219,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         let (mut index, mut piece) = (0, drive.piece(0));
         let (mut time, mut state) = (D::from(0.0), initial);
         let (mut mode, load) = self.mode(&piece, time, state);
-        let balance = (load, self.static_force(&piece, time).0);
+        let balance = (load, self.static_force(&piece, time, state).0);
         recorder.push(Self::event(EventKind::Start, time, state, mode, balance, false))?;
         self.push(mode, drive, index, &mut state);
         let end = recorder.sampling.end();
@@ -228,7 +241,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             (time, state) = (ended.time, ended.state);
             let (kind, next, load) = match ended.ending {
                 Ending::Limit if last => {
-                    let breakaway = self.levels.breakaway().value();
+                    let over_position = self.load_over_position.factor(state.position).value();
+                    let breakaway = self.levels.breakaway().value() * over_position;
                     let rests =
                         mode == Mode::Stick && holds_for_good(self.oscillator, drive, index, time, state, breakaway);
                     recorder.trajectory.rests = rests;
@@ -275,7 +289,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 }
             };
             mode = next;
-            let balance = (load, self.static_force(&piece, time).0);
+            let balance = (load, self.static_force(&piece, time, state).0);
             recorder.push(Self::event(kind, time, state, mode, balance, ended.grazing))?;
         }
     }
@@ -312,7 +326,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
             return Some(self.mode(piece, time, state)).filter(|(next, _)| *next != Mode::Stick);
         };
         let drive = load.now().value() * direction.sign();
-        let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, (state.velocity - self.belt).abs());
+        let (gaining, losing) =
+            self.branch_forces(self.normal_load(piece, time, state).0, (state.velocity - self.belt).abs());
         let agrees = match mode {
             Mode::Gaining(_) => drive >= gaining.value(),
             Mode::Losing(_) => drive <= losing.value(),
@@ -329,7 +344,8 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
 
     /// Next mode of a contact whose acceleration has become zero on a branch.
     fn after_branch(&self, mode: Mode, piece: &Piece<D>, time: D, state: State<D>) -> Mode {
-        let (gaining, losing) = self.branch_forces(piece.normal_load(time).0, (state.velocity - self.belt).abs());
+        let (gaining, losing) =
+            self.branch_forces(self.normal_load(piece, time, state).0, (state.velocity - self.belt).abs());
         match mode {
             // Between the levels nothing but a constant speed is consistent.
             Mode::Gaining(direction) | Mode::Losing(direction) if gaining.value() >= losing.value() => {
@@ -364,7 +380,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
                 }
             }
         };
-        let (normal_load, load_slope) = phase.piece.normal_load(phase.time);
+        let (normal_load, load_slope) = self.normal_load(phase.piece, phase.time, phase.state);
         let begin = phase.time.value();
         let mut leaving: Option<(f64, (D, D), f64)> = None;
         let span = phase.limit - begin;

@@ -53,6 +53,7 @@
 //! | a spring pulled at its other end with velocity v | [`Excitation::ramp`] of k v |
 //! | a counterface whose velocity b′ varies, on a linear machine | x counted from the counterface, under an [`Excitation::function`] of −m b″ − c b′ − k b; the work of friction is unchanged, that of force and damping is not |
 //! | a normal load that varies, with a law of the sliding speed | [`Scenario::under_sampled_load`] |
+//! | a normal load that grows or falls with the square of the position | [`Scenario::under_curved_load`] |
 //! | bristles that an earlier motion has left bent | [`Scenario::with_deflection`] |
 //! | any force over time | [`Excitation::function`], or [`Excitation::sampled_force`] |
 //!

@@ -69,8 +69,8 @@ impl<D: Scalar, L: PiecewiseLinearLaw<D>> Engine<D, L> for Exact {
         if !matches!(oscillator.restoring(), Restoring::Linear) {
             return Err(SimulationError::not_linear("a nonlinear restoring force"));
         }
-        if scenario.sampled_load().is_some() {
-            return Err(SimulationError::not_linear("a normal load that varies in time"));
+        if !scenario.has_constant_load() {
+            return Err(SimulationError::not_linear("a normal load that varies"));
         }
         if oscillator.stiffness().value() == 0.0 {
             return Err(SimulationError::weak_spring(0.0));

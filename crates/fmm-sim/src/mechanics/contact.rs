@@ -4,7 +4,7 @@ use fmm_friction::{Affine, SlidingLaw};
 use fmm_model::{Oscillator, Restoring, Scalar};
 
 use crate::mechanics::{Curve, Forcing, Piece, ROUNDING, Wave};
-use crate::scenario::State;
+use crate::scenario::{LoadOverPosition, State};
 
 /// Friction levels of a law, in the form that the automaton needs.
 pub(crate) trait Levels<D> {
@@ -55,6 +55,21 @@ impl<D: Scalar> Levels<D> for Branches<D> {
     fn has_branches(&self) -> bool {
         self.differ
     }
+}
+
+/// Normal load (N) at `time` in `state`, and its slope at constant velocity (N/s).
+pub(crate) fn normal_load<D: Scalar>(
+    piece: &Piece<D>,
+    over_position: LoadOverPosition<D>,
+    time: D,
+    state: State<D>,
+) -> (D, D) {
+    let (load, slope) = piece.normal_load(time);
+    if over_position.is_constant() {
+        return (load, slope);
+    }
+    let factor = over_position.factor(state.position);
+    (load * factor, slope * factor + load * over_position.slope(state.position) * state.velocity)
 }
 
 /// Load left for friction at constant velocity from `state` at `time` on (N): L = f − F_c − F_k.
@@ -108,7 +123,7 @@ pub(crate) fn rounding<D: Scalar, E: Scalar>(
 }
 
 /// True if a contact that holds in `state` at `time`, in the piece of this `index`, is at rest, and its `breakaway`
-/// coefficient holds all forces to come.
+/// force over the normal load in the force-free position holds all forces to come.
 pub(crate) fn holds_for_good<D: Scalar>(
     oscillator: &Oscillator<D>,
     drive: &Forcing<D>,

@@ -8,7 +8,7 @@ mod forcing;
 mod spring;
 mod steady;
 
-pub(crate) use contact::{Branches, Levels, Sliding, holds_for_good, load, rounding};
+pub(crate) use contact::{Branches, Levels, Sliding, holds_for_good, load, normal_load, rounding};
 pub(crate) use crossing::{crossing, first_crossing};
 pub(crate) use curve::{Curve, ROUNDING, SEARCH_BUDGET, Wave, first_zero};
 pub(crate) use decay::Decay;

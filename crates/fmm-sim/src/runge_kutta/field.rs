@@ -4,8 +4,8 @@ use fmm_friction::SlidingLaw;
 use fmm_model::{Oscillator, Scalar};
 
 use crate::automaton::{Branch, Phase};
-use crate::mechanics::{Forcing, ROUNDING, Spring, load, rounding};
-use crate::scenario::{Scenario, State};
+use crate::mechanics::{Forcing, ROUNDING, Spring, load, normal_load, rounding};
+use crate::scenario::{LoadOverPosition, Scenario, State};
 use crate::trajectory::Power;
 
 /// A side of the capture speed, at which the law may jump.
@@ -67,6 +67,7 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     normal_load: D,
     /// True if the normal load varies in time.
     load_varies: bool,
+    load_over_position: LoadOverPosition<D>,
     pub(super) belt: D,
     /// 1/m.
     pub(super) per_mass: D,
@@ -83,7 +84,7 @@ pub(super) struct Field<'a, D, L: ?Sized> {
 pub(super) struct Outside<D> {
     /// Force (N), if there is any.
     force: Option<D>,
-    /// Normal load (N).
+    /// Normal load in the force-free position (N).
     normal_load: D,
 }
 
@@ -97,6 +98,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
             law: scenario.law(),
             normal_load: scenario.normal_load(),
             load_varies: scenario.sampled_load().is_some(),
+            load_over_position: scenario.load_over_position(),
             belt: drive.belt(),
             per_mass: D::from(1.0) / oscillator.mass(),
             linear_damping: oscillator.damping().is_linear().then(|| oscillator.damping().linear_coefficient()),
@@ -142,10 +144,21 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         Outside { force, normal_load }
     }
 
-    /// Growth of friction in time (N/s) at constant `velocity`, along the positive direction.
-    pub(super) fn friction_slope(&self, phase: &Phase<D>, side: Side, velocity: D) -> D {
-        let slope = phase.piece.normal_load(phase.time).1;
-        self.coefficient(phase, side, self.speed(phase, velocity)) * slope * phase.direction.sign()
+    /// Growth of friction in time (N/s) at constant velocity from `state` on, along the positive direction.
+    pub(super) fn friction_slope(&self, phase: &Phase<D>, side: Side, state: State<D>) -> D {
+        let slope = normal_load(phase.piece, self.load_over_position, phase.time, state).1;
+        self.coefficient(phase, side, self.speed(phase, state.velocity)) * slope * phase.direction.sign()
+    }
+
+    /// Friction (N) in `state` at a sliding `speed`, along the positive direction.
+    #[inline]
+    fn friction(&self, phase: &Phase<D>, side: Side, outside: Outside<D>, state: State<D>, speed: D) -> D {
+        let friction = outside.normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
+        if self.load_over_position.is_constant() {
+            friction
+        } else {
+            friction * self.load_over_position.factor(state.position)
+        }
     }
 
     /// Friction coefficient at a sliding `speed`, along the direction of `phase`.
@@ -177,7 +190,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
             Some(coefficient) => state.velocity * coefficient,
             None => self.oscillator.damping().force(state.velocity),
         };
-        let friction = outside.normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
+        let friction = self.friction(phase, side, outside, state, speed);
         let mut sum = -friction - damping - self.spring.force(state.position);
         if let Some(force) = outside.force {
             sum += force;
@@ -195,16 +208,15 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
     /// speed would change its branch for ever.
     pub(super) fn noise(&self, phase: &Phase<D>, side: Side, state: State<D>) -> f64 {
         let load = load(self.oscillator, phase.piece, phase.time, state);
-        let coefficient = self.coefficient(phase, side, self.speed(phase, state.velocity));
-        let friction = (coefficient * self.outside(phase, phase.time).normal_load).value().abs();
+        let speed = self.speed(phase, state.velocity);
+        let friction = self.friction(phase, side, self.outside(phase, phase.time), state, speed).value().abs();
         (rounding(self.oscillator, &load, phase.time, state) + ROUNDING * friction) * self.per_mass.value()
     }
 
     /// Power of friction, damping and the external forces at `time` (W).
     pub(super) fn power(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> Power<D> {
         let speed = self.speed(phase, state.velocity);
-        let normal_load = self.outside(phase, D::from(time)).normal_load;
-        let friction = normal_load * self.coefficient(phase, side, speed) * phase.direction.sign();
+        let friction = self.friction(phase, side, self.outside(phase, D::from(time)), state, speed);
         let damping = self.oscillator.damping().force(state.velocity);
         Power::of(friction, damping, phase.piece.force(time), state.velocity, self.belt)
     }

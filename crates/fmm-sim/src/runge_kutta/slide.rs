@@ -97,7 +97,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
             // At constant speed the law does not change, only the loads do.
             Guard::Steady => {
                 let load = load(self.field.oscillator, phase.piece, D::from(at.time + step.length), step.end);
-                let friction = self.field.friction_slope(phase, at.side, step.end.velocity);
+                let friction = self.field.friction_slope(phase, at.side, step.end);
                 ((load.derivative().at(D::from(0.0)) - friction) * self.field.per_mass).value()
             }
             Guard::Rest | Guard::Escape => step.last_acceleration().value(),

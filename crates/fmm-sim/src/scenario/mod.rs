@@ -2,6 +2,7 @@
 
 mod event;
 mod excitation;
+mod load_over_position;
 mod sampling;
 
 use std::sync::Arc;
@@ -14,6 +15,7 @@ use crate::error::SimulationError;
 pub use event::{Direction, Event, EventKind, Mode};
 pub use excitation::Excitation;
 pub(crate) use excitation::Source;
+pub(crate) use load_over_position::LoadOverPosition;
 pub use sampling::{Channels, Sampling};
 
 /// Position and velocity at one instant.
@@ -43,6 +45,7 @@ pub struct Scenario<D, L: ?Sized> {
     oscillator: Oscillator<D>,
     normal_load: D,
     sampled_load: Option<SampledLoad<D>>,
+    load_over_position: LoadOverPosition<D>,
     initial: State<D>,
     /// States of the law at t = 0, up to the last that is not zero.
     deflections: Vec<D>,
@@ -73,6 +76,7 @@ impl<D: Scalar, L> Scenario<D, L> {
             oscillator,
             normal_load,
             sampled_load: None,
+            load_over_position: LoadOverPosition::default(),
             initial,
             deflections: Vec::new(),
             excitations: Vec::new(),
@@ -132,6 +136,34 @@ impl<D: Scalar, L> Scenario<D, L> {
         self.sampled_load = (values.len() > 1).then_some(SampledLoad { interval, values });
         Ok(self)
     }
+
+    /// The scenario under a normal load that depends on the position, N (1 + β x²) with this `curvature` β (1/m²), such
+    /// as where a flexure comes nearer to the contact as it deflects. Where that is negative, the contact has lifted.
+    ///
+    /// [`RungeKutta`](crate::RungeKutta) takes such a load with a law of the sliding speed of one branch, on a
+    /// counterface that stands, and [`simulate`](crate::simulate) takes that engine.
+    ///
+    /// ```
+    /// use fmm_friction::Coulomb;
+    /// use fmm_model::Oscillator;
+    /// use fmm_sim::{Sampling, Scenario, simulate};
+    ///
+    /// // A mass on a rail; the work of friction is that of the motion: m v₀²/2 = μ N (x + β x³/3).
+    /// let scenario = Scenario::new(Oscillator::new(1.0, 0.0)?, Coulomb::new(0.2)?, 10.0)?;
+    /// let scenario = scenario.under_curved_load(3.0)?.starting_at(0.0, 2.0)?;
+    /// let motion = simulate(&scenario, &Sampling::uniform(0.5, 8)?)?;
+    /// let x = motion.rest().expect("friction stops it").position;
+    /// assert!((2.0 * (x + x.powi(3)) - 2.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SimulationError::Quantity`] if the curvature is not finite.
+    pub fn under_curved_load(mut self, curvature: D) -> Result<Self, SimulationError> {
+        ModelError::require_finite("curvature of the normal load", curvature.value(), "1/m²")?;
+        self.load_over_position = LoadOverPosition::curved(curvature);
+        Ok(self)
+    }
 }
 
 impl<D: Scalar, L: ?Sized> Scenario<D, L> {
@@ -140,18 +172,28 @@ impl<D: Scalar, L: ?Sized> Scenario<D, L> {
         self.sampled_load.as_ref()
     }
 
-    /// The largest normal load (N).
+    /// The normal load over the position.
+    pub(crate) fn load_over_position(&self) -> LoadOverPosition<D> {
+        self.load_over_position
+    }
+
+    /// The largest normal load in the force-free position (N).
     pub(crate) fn largest_load(&self) -> D {
         let samples = self.sampled_load.iter().flat_map(|load| load.values.iter().copied());
         samples.fold(self.normal_load, |most, load| if load.value() > most.value() { load } else { most })
     }
 
+    /// True if the normal load is the same at all times and positions.
+    pub(crate) fn has_constant_load(&self) -> bool {
+        self.sampled_load.is_none() && self.load_over_position.is_constant()
+    }
+
     /// Checks that the normal load is constant, which `engine` needs.
     pub(crate) fn require_constant_load(&self, engine: &'static str) -> Result<(), SimulationError> {
-        if self.sampled_load.is_none() {
+        if self.has_constant_load() {
             return Ok(());
         }
-        Err(SimulationError::NotSupported { engine, what: "a normal load that varies in time" })
+        Err(SimulationError::NotSupported { engine, what: "a normal load that varies" })
     }
 
     /// External actions on the machine.
@@ -169,7 +211,7 @@ impl<D: Scalar, L: ?Sized> Scenario<D, L> {
         &self.law
     }
 
-    /// N, normal load (N), at t = 0 if it varies.
+    /// N, normal load (N), at t = 0 in the force-free position if it varies.
     pub fn normal_load(&self) -> D {
         self.normal_load
     }
