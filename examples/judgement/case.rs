@@ -14,6 +14,8 @@ pub(crate) struct Truth {
     pub(crate) levels: Levels,
     /// Relative change of the friction with each half cycle (1), of the mean.
     pub(crate) change: f64,
+    /// Rise of the friction from the middle to the largest deflection (1), of the mean.
+    pub(crate) rise: f64,
     /// c/m of machine and law together (1/s).
     pub(crate) damping_per_mass: f64,
     /// f₀ (Hz).

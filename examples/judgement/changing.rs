@@ -38,6 +38,16 @@ pub(crate) fn cells() -> Vec<Cell> {
             let rise = random.uniform(0.05, 0.3);
             Box::new(move |passed, all| 1.0 + rise * passed / all)
         }),
+        Cell::new(
+            Group::Changing,
+            "changing/load-over-position".to_owned(),
+            "a load that rises from the middle to the largest deflection by 5 to 30 %",
+            |random| {
+                let machine = LIKE_THESIS.draw(1.0, random);
+                let (coefficient, rise) = (random.uniform(0.05, 0.6), random.uniform(0.05, 0.3));
+                over_position(&machine, coefficient, rise, random)
+            },
+        ),
     ]
 }
 
@@ -50,9 +60,13 @@ fn cell(name: &str, about: &str, choose: fn(&mut Random) -> Factor) -> Cell {
     })
 }
 
+/// The terms beside Coulomb friction of both a machine with damping and one without.
+const CHANGE: [&str; 2] = ["coulomb + change", "coulomb_viscous + change"];
+const POSITION: [&str; 2] = ["coulomb + position", "coulomb_viscous + position"];
+
 fn drawn(machine: &Drawn, coefficient: f64, factor: &Factor, random: &mut Random) -> Found<Case> {
     let load = machine.friction / coefficient;
-    let setup = machine.with("coulomb", vec![coefficient], load, &["coulomb + change", "coulomb_viscous + change"]);
+    let setup = machine.with("coulomb", vec![coefficient], load, &CHANGE);
     let half_period = PI / setup.angular_frequency();
     let half_cycles = machine.half_cycles();
     let at = |index: u32| load * factor(f64::from(index), half_cycles);
@@ -60,32 +74,62 @@ fn drawn(machine: &Drawn, coefficient: f64, factor: &Factor, random: &mut Random
     let loads: Vec<f64> = (0..=half_cycles as u32).map(at).collect();
     let scenario = Scenario::new(setup.oscillator()?, Coulomb::new(coefficient)?, load)?;
     let scenario = scenario.under_sampled_load(half_period, loads.clone())?.starting_at(setup.release, 0.0)?;
-    let interval = 2.0 * half_period / machine.samples();
-    let count = (half_cycles * half_period / interval).ceil() as usize;
-    let motion = simulate(&scenario, &Sampling::uniform(interval, count)?)?;
-    let mut values = motion.velocity().values().to_vec();
-    let peak_speed = largest(&values);
-    noise::white(&mut values, peak_speed / machine.signal_to_noise(), random);
-    let mean = mean_over_path(&motion, |time| {
+    let Released { record, motion, peak_speed } = released(machine, &scenario, half_period, random)?;
+    let mean = mean_over_path(&motion, |time, _| {
         let (place, last) = (time / half_period, loads.len() - 1);
         let below = (place as usize).min(last);
         let above = (below + 1).min(last);
         (loads[below] + (loads[above] - loads[below]) * (place - below as f64)) / load
     });
-    let level = coefficient * mean;
     let change = (loads[loads.len() - 1] / loads[0] - 1.0) / (loads.len() - 1) as f64 / mean;
-    let truth =
-        Truth { levels: Levels { rest: level, peak: level, beyond: level }, change, ..setup.truth(peak_speed)? };
-    let record = Record::new(0.0, interval, values, Quantity::Velocity, "m/s")?;
+    let truth = Truth { levels: Levels::constant(coefficient * mean), change, ..setup.truth(peak_speed)? };
     Ok(Case { record, machine: setup.known()?, truth })
 }
 
-/// Mean of a `factor` over the path slid (1).
-fn mean_over_path(motion: &Trajectory, factor: impl Fn(f64) -> f64) -> f64 {
-    let times = motion.times();
+/// A load that rises by the share `rise` from the middle to the release.
+fn over_position(machine: &Drawn, coefficient: f64, rise: f64, random: &mut Random) -> Found<Case> {
+    let load = machine.friction / coefficient;
+    let setup = machine.with("coulomb", vec![coefficient], load, &POSITION);
+    let scenario = Scenario::new(setup.oscillator()?, Coulomb::new(coefficient)?, load)?;
+    let curvature = rise / setup.release.powi(2);
+    let scenario = scenario.under_curved_load(curvature)?.starting_at(setup.release, 0.0)?;
+    let half_period = PI / setup.angular_frequency();
+    let Released { record, motion, peak_speed } = released(machine, &scenario, half_period, random)?;
+    let mean = mean_over_path(&motion, |_, position| 1.0 + curvature * position * position);
+    let levels = Levels::constant(coefficient * mean);
+    let truth = Truth { levels, rise: rise / mean, ..setup.truth(peak_speed)? };
+    Ok(Case { record, machine: setup.known()?, truth })
+}
+
+/// The velocity of a simulated motion, with noise.
+struct Released {
+    record: Record,
+    motion: Trajectory,
+    peak_speed: f64,
+}
+
+fn released(
+    machine: &Drawn,
+    scenario: &Scenario<f64, Coulomb<f64>>,
+    half_period: f64,
+    random: &mut Random,
+) -> Found<Released> {
+    let interval = 2.0 * half_period / machine.samples();
+    let count = (machine.half_cycles() * half_period / interval).ceil() as usize;
+    let motion = simulate(scenario, &Sampling::uniform(interval, count)?)?;
+    let mut values = motion.velocity().values().to_vec();
+    let peak_speed = largest(&values);
+    noise::white(&mut values, peak_speed / machine.signal_to_noise(), random);
+    let record = Record::new(0.0, interval, values, Quantity::Velocity, "m/s")?;
+    Ok(Released { record, motion, peak_speed })
+}
+
+/// Mean over the path slid of a `factor` by time (s) and position (m).
+fn mean_over_path(motion: &Trajectory, factor: impl Fn(f64, f64) -> f64) -> f64 {
+    let places = motion.times().zip(motion.position().values()).zip(motion.velocity().values());
     let (mut sum, mut path) = (0.0, 0.0);
-    for (time, velocity) in times.zip(motion.velocity().values()) {
-        sum += factor(time) * velocity.abs();
+    for ((time, position), velocity) in places {
+        sum += factor(time, *position) * velocity.abs();
         path += velocity.abs();
     }
     sum / path

@@ -19,8 +19,10 @@ fn plain(name: &str) -> String {
     if let Some(changing) = name.strip_suffix(" + curved change") {
         return plain(changing);
     }
-    if let Some(steady) = name.strip_suffix(" + change") {
-        return format!("{} + change", plain(steady));
+    for term in [" + position", " + change"] {
+        if let Some(steady) = name.strip_suffix(term) {
+            return format!("{}{term}", plain(steady));
+        }
     }
     match name.strip_suffix(" + linear") {
         Some("coulomb") => "coulomb_viscous".to_owned(),
@@ -73,7 +75,9 @@ pub(crate) struct Verdict {
     pub(crate) warnings: Vec<String>,
     pub(crate) is_loud: bool,
     /// The largest change of the friction with each half cycle (1) that is said not to show, with its price.
-    pub(crate) unseen: Option<f64>,
+    pub(crate) unseen_change: Option<f64>,
+    /// The largest rise of the friction to the largest deflection (1) of which it says that it would not show.
+    pub(crate) unseen_rise: Option<f64>,
     /// μ of a law with one level; of others a level that they have a parameter for.
     pub(crate) mu: Option<Stated>,
     /// c/m (1/s).
@@ -99,7 +103,8 @@ pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
         named: named(&comparison),
         warnings,
         is_loud: is_loud(comparison.warnings()),
-        unseen: comparison.friction_change().map(|change| change.largest_unseen()),
+        unseen_change: comparison.friction_change().map(|change| change.largest_unseen()),
+        unseen_rise: comparison.friction_over_position().map(|rise| rise.largest_unseen()),
         mu: finding(&["mu", "sliding_mu", "static_mu", "gaining_mu"]),
         damping: finding(&["damping_per_mass"]),
         frequency: finding(&["natural_frequency_hz"]),

@@ -22,6 +22,11 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
+    /// The same `level` at all speeds.
+    pub(crate) fn constant(level: f64) -> Self {
+        Self { rest: level, peak: level, beyond: level }
+    }
+
     /// All levels times `factor`.
     pub(crate) fn times(self, factor: f64) -> Self {
         Self { rest: self.rest * factor, peak: self.peak * factor, beyond: self.beyond * factor }

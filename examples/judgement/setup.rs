@@ -63,6 +63,7 @@ impl Setup {
             right: self.right.clone(),
             levels: law.levels(&self.values, peak_speed).ok_or("the law has no level")?,
             change: 0.0,
+            rise: 0.0,
             damping_per_mass: (self.damping + self.load * law.slope(&self.values)) / self.mass,
             frequency: self.oscillator()?.natural_frequency(),
             peak_speed,

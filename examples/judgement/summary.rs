@@ -122,7 +122,10 @@ impl Summary {
 
     fn count(&mut self, truth: &Truth, verdict: &Verdict) {
         // An assumption with its price is a word on a change that does not show, and on no other.
-        let is_priced = truth.change != 0.0 && verdict.unseen.is_some_and(|unseen| truth.change.abs() < unseen);
+        let does_not_show =
+            |size: f64, unseen: Option<f64>| size != 0.0 && unseen.is_some_and(|most| size.abs() < most);
+        let is_priced =
+            does_not_show(truth.change, verdict.unseen_change) || does_not_show(truth.rise, verdict.unseen_rise);
         let is_loud = verdict.is_loud || is_priced;
         let holds_mu = verdict
             .mu

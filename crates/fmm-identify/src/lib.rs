@@ -137,7 +137,7 @@ pub use experiment::{
 pub use finding::{Finding, Origin, Source};
 pub use friction_curve::{FrictionCurve, FrictionLevel};
 pub use identification::{FittedMotion, Identification, Profile, Profiles, Validation};
-pub use judgement::{Comparison, FrictionChange, FrictionOverLoad, Inquiry, ScoreTest, compare, identify, search};
+pub use judgement::{Comparison, FrictionOverLoad, Inquiry, ScoreTest, Unseen, compare, identify, search};
 pub use machine::{Known, Machine, Terms};
 #[cfg(feature = "sampler")]
 pub use posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};

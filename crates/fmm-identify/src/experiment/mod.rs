@@ -2,6 +2,7 @@
 
 mod acceleration;
 pub(crate) mod clock;
+pub(crate) mod deflections;
 mod drive;
 mod driven;
 pub(crate) mod first_guess;
@@ -36,6 +37,7 @@ pub(crate) use sensor::Filter;
 pub use sensor::Sensor;
 
 use crate::error::IdentifyError;
+use crate::experiment::deflections::Deflections;
 use crate::experiment::first_guess::{Dissipation, FirstGuess};
 use crate::experiment::force::ForceRecord;
 use crate::experiment::lines::Lines;
@@ -350,6 +352,11 @@ impl Experiment {
             return vec![(0.0, 0.5), (self.record.duration(), 0.5)];
         }
         self.peaks.iter().map(|(time, value)| (time - self.record.start(), (value - zero).abs() / path)).collect()
+    }
+
+    /// Deflections along the path slid.
+    pub(crate) fn deflections(&self) -> Deflections {
+        Deflections::of(&self.path_shares(), self.scales().0)
     }
 
     /// Ranges of samples that are fitted; what lies between them is left out.

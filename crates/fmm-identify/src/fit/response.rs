@@ -57,7 +57,7 @@ impl<'a> Response<'a> {
         problem.table.oscillator == 1
             && problem.machine.restoring() == Restoring::Linear
             && !problem.has_spring()
-            && !problem.table.terms.has(Term::Change)
+            && ![Term::Change, Term::Position].into_iter().any(|term| problem.table.terms.has(term))
             && decay.drive().is_none()
             && decay.first_corner().is_none()
             && decay.record().is_equally_spaced()

@@ -6,11 +6,11 @@ use crate::experiment::{Experiment, RecordSummary};
 use crate::finding::{Finding, Source};
 use crate::identification::beside::closest;
 use crate::identification::{Identification, Validation};
-use crate::judgement::change::{FrictionChange, asks_for_change};
+use crate::judgement::change::asks_for_change;
 use crate::judgement::filtering::{filtering_sensor, other_quantity};
 use crate::judgement::rules::{EQUAL_PREDICTION, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
-use crate::judgement::unseen_damping::UnseenDamping;
+use crate::judgement::unseen::Unseen;
 use crate::judgement::{Judgement, shortcomings};
 use crate::quantities::derived::OF_DAMPING;
 use crate::warning::Warning;
@@ -39,9 +39,11 @@ pub struct Comparison {
     pub(crate) judgement: Judgement,
     pub(crate) score_tests: Vec<ScoreTest>,
     /// Change of the friction during the records that the preferred law leaves out.
-    pub(crate) change: Option<FrictionChange>,
-    /// Damping of the machine that the preferred law leaves out.
-    pub(crate) unseen_damping: Option<UnseenDamping>,
+    pub(crate) change: Option<Unseen>,
+    /// Dependence of the friction on the position that it leaves out.
+    pub(crate) over_position: Option<Unseen>,
+    /// Damping of the machine that it leaves out.
+    pub(crate) unseen_damping: Option<Unseen>,
     /// Names of the laws that the friction over the speed excludes without a fit.
     pub(crate) excluded: Vec<String>,
     pub(crate) is_complete: bool,
@@ -108,19 +110,25 @@ impl Comparison {
         warnings.extend(misled(&identifications, preferred));
         warnings.extend(sensor);
         warnings.extend(quantity);
-        let change = FrictionChange::of(&identifications[preferred], decays);
+        let change = Unseen::change(&identifications[preferred], decays);
         let asks = || asks_for_change(&identifications[preferred], decays, SHOWN_CHANGE);
         if change.map_or_else(asks, |change| change.is_shown()) {
             warnings.push(Warning::FrictionChanges { law: identifications[preferred].law().to_owned() });
             judgement.is_decided = false;
         }
-        let unseen_damping = UnseenDamping::of(&identifications[preferred], decays);
+        let over_position = Unseen::over_position(&identifications[preferred], decays);
+        if over_position.is_some_and(|unseen| unseen.is_shown()) {
+            warnings.push(Warning::FrictionOverPosition { law: identifications[preferred].law().to_owned() });
+            judgement.is_decided = false;
+        }
+        let unseen_damping = Unseen::damping(&identifications[preferred], decays);
         Ok(Self {
             records: decays.iter().map(|decay| decay.summary().clone()).collect(),
             identifications,
             judgement,
             score_tests: Vec::new(),
             change,
+            over_position,
             unseen_damping,
             excluded: Vec::new(),
             is_complete: true,
@@ -305,15 +313,20 @@ impl Comparison {
     ///
     /// ```no_run
     /// # fn of(comparison: &fmm_identify::Comparison) {
-    /// use fmm_identify::FrictionChange;
+    /// use fmm_identify::Unseen;
     ///
-    /// if let Some(change) = comparison.friction_change().filter(FrictionChange::is_shown) {
-    ///     println!("{:.2} % with each half cycle", 100.0 * change.per_half_cycle);
+    /// if let Some(change) = comparison.friction_change().filter(Unseen::is_shown) {
+    ///     println!("{:.2} % with each half cycle", 100.0 * change.size);
     /// }
     /// # }
     /// ```
-    pub fn friction_change(&self) -> Option<FrictionChange> {
+    pub fn friction_change(&self) -> Option<Unseen> {
         self.change
+    }
+
+    /// Rise of the friction from the middle to the largest deflection that the preferred law leaves out, likewise.
+    pub fn friction_over_position(&self) -> Option<Unseen> {
+        self.over_position
     }
 
     /// Names of the laws that a search did not fit, as the friction over the speed that the records show without a law

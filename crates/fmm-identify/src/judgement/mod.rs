@@ -10,13 +10,13 @@ pub(crate) mod rules;
 pub(crate) mod score_test;
 mod search;
 mod trials;
-pub(crate) mod unseen_damping;
+pub(crate) mod unseen;
 
-pub use change::FrictionChange;
 pub use comparison::Comparison;
 pub use friction_over_load::FrictionOverLoad;
 pub use inquiry::{Inquiry, compare, identify, search};
 pub use score_test::ScoreTest;
+pub use unseen::Unseen;
 
 use fmm_fit::FTest;
 

@@ -128,7 +128,8 @@ pub(crate) fn score_tests(
     let quadratic = Problem::of(&base.fitted.model.clone().with(quadratic), machine, decays)?;
     changes.push((Extension::QuadraticDamping, residuals(&quadratic, of_base)));
     // A contact with internal state takes no load that changes.
-    if friction > 0.0 && !base.fitted.model.terms.has(Term::Change) {
+    let terms = &base.fitted.model.terms;
+    if friction > 0.0 && !terms.has(Term::Change) && !terms.has(Term::Position) {
         let dahl = Problem::of(&Candidate::of::<Dahl>().with(linear), machine, decays)?;
         let of_law = [friction, friction / (STEP * length), 1.0];
         changes.push((Extension::Presliding, residuals(&dahl, &of_law)));
@@ -161,8 +162,10 @@ fn is_simple(base: &Identification) -> bool {
         _ if terms.held().next().is_some() => false,
         CoulombViscous::NAME => further().next().is_none(),
         Coulomb::NAME => {
-            let changing = Terms::NONE.with_linear_damping().with_change();
-            further().eq(changing.iter()) || further().eq(changing.with_curved_change().iter())
+            let linear = Terms::NONE.with_linear_damping();
+            let changing = linear.clone().with_change();
+            let varied = [linear.with_friction_over_position(), changing.clone().with_curved_change(), changing];
+            varied.iter().any(|varied| further().eq(varied.iter()))
         }
         _ => false,
     }

@@ -14,7 +14,7 @@ use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::identification::drift::drifts_in_vain;
 use crate::judgement::Judgement;
-use crate::judgement::change::{asks_for_change, with_change};
+use crate::judgement::change::{asks_for_change, with_change, with_position};
 use crate::judgement::comparison::{Comparison, explains};
 use crate::judgement::filtering::behind_filter;
 use crate::judgement::inquiry::Inquiry;
@@ -24,6 +24,7 @@ use crate::judgement::rules::{
 };
 use crate::judgement::score_test::{Extension, ScoreTest, score_tests};
 use crate::judgement::trials::{CORNERS, Trial, beside_line};
+use crate::judgement::unseen::Unseen;
 use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
@@ -83,6 +84,7 @@ impl Inquiry<'_> {
         }
         let run = Run { decays, ..run };
         run.fit_changes(&mut found, Found::simple)?;
+        run.fit_over_position(&mut found)?;
         let (mut tests, mut left_out) = run.score_tests(&found);
         let changes = found.changes();
         if changes || found.asks_for_more(&tests) {
@@ -180,9 +182,9 @@ impl Found {
         self.preferred().is_some_and(|preferred| preferred.structure.is_correlated())
     }
 
-    /// The best law is one of friction that changes during the record.
+    /// The best law is one of friction that changes during the record or over the position.
     fn changes(&self) -> bool {
-        self.preferred().is_some_and(|preferred| preferred.fitted.model.terms.has(Term::Change))
+        self.preferred().is_some_and(is_varied)
     }
 
     fn preferred(&self) -> Option<&Identification> {
@@ -190,10 +192,10 @@ impl Found {
         Some(&self.identifications[judgement.preferred])
     }
 
-    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it if that is
-    /// best.
+    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it or a dependence
+    /// on the position if that is best.
     fn base(&self) -> Option<&Identification> {
-        self.preferred().filter(|preferred| preferred.fitted.model.terms.has(Term::Change)).or_else(|| self.simple())
+        self.preferred().filter(|preferred| is_varied(preferred)).or_else(|| self.simple())
     }
 
     /// The fit by Coulomb and viscous friction, whatever is held of it, with what else acts if there is one.
@@ -201,6 +203,12 @@ impl Found {
         let all = || self.identifications.iter().filter(|found| found.family().name == CoulombViscous::NAME);
         all().find(|found| found.fitted.model.terms.iter().eq(self.beside.iter())).or_else(|| all().next())
     }
+}
+
+/// Friction by the law changes during the record or over the position.
+fn is_varied(found: &Identification) -> bool {
+    let terms = &found.fitted.model.terms;
+    terms.has(Term::Change) || terms.has(Term::Position)
 }
 
 /// The law has presliding.
@@ -432,6 +440,25 @@ impl Run<'_, '_> {
         Ok(())
     }
 
+    /// Adds a fit of the simple law with friction that depends on the position, if its residuals show that. Laws that
+    /// fall with the speed and a change that slows down look like it, and are not asked.
+    fn fit_over_position(&self, found: &mut Found) -> Result<(), IdentifyError> {
+        let is_shown =
+            |base: &&Identification| Unseen::over_position(base, self.decays).is_some_and(|unseen| unseen.is_shown());
+        let Some(base) = found.simple().filter(|_| !is_past(self.end)).filter(is_shown) else { return Ok(()) };
+        let Some(candidate) = with_position(&Candidate::fitted(base)) else { return Ok(()) };
+        let begin = Begin::Extended(&base.fitted);
+        let options = self.with_most(MOST_ITERATIONS_OF_CHANGE);
+        let identifications = vec![self.inquiry.fit(&candidate, self.decays.into(), begin, &options, None)?];
+        found.add(Found { candidates: vec![candidate], identifications, ..Found::default() });
+        Ok(())
+    }
+
+    /// Options of a fit of so many iterations at most.
+    fn with_most(&self, most: usize) -> Options {
+        self.options.clone().with_max_iterations(most.min(self.options.max_iterations()))
+    }
+
     /// Replaces the laws that are left by the same with friction that changes, where it is known how little it does.
     fn allow_changes(&self, found: &mut Found) -> Result<(), IdentifyError> {
         let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return Ok(()) };
@@ -453,8 +480,7 @@ impl Run<'_, '_> {
     fn fit_change(&self, found: &mut Found, base: &Identification) -> Result<Option<Identification>, IdentifyError> {
         let Some(candidate) = with_change(&Candidate::fitted(base)) else { return Ok(None) };
         let begin = Begin::Extended(&base.fitted);
-        let most = MOST_ITERATIONS_OF_CHANGE.min(self.options.max_iterations());
-        let options = self.options.clone().with_max_iterations(most);
+        let options = self.with_most(MOST_ITERATIONS_OF_CHANGE);
         let is_curved = candidate.terms.has(Term::CurvedChange);
         let end = self.end.filter(|_| is_curved);
         let changed = self.inquiry.fit(&candidate, self.decays.into(), begin, &options, end)?;

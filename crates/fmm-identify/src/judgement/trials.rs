@@ -5,7 +5,7 @@ use fmm_friction::{CoulombViscous, FamilyVisitor, LawFamily, SearchRole, SearchS
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::judgement::change::with_change;
+use crate::judgement::change::{with_change, with_position};
 use crate::judgement::inquiry::Inquiry;
 use crate::machine::Terms;
 use crate::machine::term::Term;
@@ -138,6 +138,8 @@ impl Trial {
     pub(super) fn beside(self, terms: &Terms) -> Self {
         let changing = with_change(&self.candidate).filter(|_| terms.has(Term::Change));
         let candidate = changing.unwrap_or(self.candidate);
+        let over_position = with_position(&candidate).filter(|_| terms.has(Term::Position));
+        let candidate = over_position.unwrap_or(candidate);
         let spring = terms.iter().filter(|term| term.is_spring());
         let terms = spring.fold(candidate.terms.clone(), Terms::with);
         Self { candidate: candidate.with(terms), ..self }

@@ -27,6 +27,8 @@ pub(crate) struct Motion<D> {
     pub(crate) normal_load: D,
     /// Distance in time (s) of the factors of a load that changes, and these (1).
     pub(crate) change: Option<(f64, Vec<D>)>,
+    /// Curvature of the load over the position, over the load in the middle (1/m²).
+    pub(crate) curvature: Option<D>,
     /// Position and velocity at the beginning.
     pub(crate) initial: [D; 2],
     pub(crate) force: Option<Excitation<D>>,
@@ -43,6 +45,10 @@ impl<D: Scalar> Motion<D> {
                 let loads: Vec<D> = factors.iter().map(|factor| self.normal_load * *factor).collect();
                 scenario.under_sampled_load(*interval, loads)?
             }
+            None => scenario,
+        };
+        let scenario = match self.curvature {
+            Some(curvature) => scenario.under_curved_load(curvature)?,
             None => scenario,
         };
         let scenario = scenario.starting_at(self.initial[0], self.initial[1])?;

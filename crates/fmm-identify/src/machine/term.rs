@@ -23,6 +23,8 @@ pub(crate) enum Term {
     Change,
     /// Rate r at which that change slows down.
     CurvedChange,
+    /// Curvature β of the friction over the position.
+    Position,
     /// Zero of the force, F₀.
     Zero,
     /// Inertia m v' of the mass between the force sensor and the contact.
@@ -45,7 +47,7 @@ pub(crate) enum Term {
 
 impl Term {
     /// All terms, in the order of their words in the name of a candidate.
-    pub(crate) const ALL: [Self; 21] = [
+    pub(crate) const ALL: [Self; 22] = [
         Self::LinearDamping,
         Self::QuadraticDamping,
         Self::CubicDamping,
@@ -58,6 +60,7 @@ impl Term {
         Self::Gap,
         Self::Change,
         Self::CurvedChange,
+        Self::Position,
         Self::Zero,
         Self::Inertia,
         Self::Stiffness,
@@ -82,6 +85,7 @@ impl Term {
             Self::Gap => Some("gap"),
             Self::Change => Some("change"),
             Self::CurvedChange => Some("curved change"),
+            Self::Position => Some("position"),
             Self::Zero => Some("zero"),
             Self::Inertia => Some("inertia"),
             Self::Stiffness => Some("stiffness"),
@@ -128,7 +132,7 @@ impl Term {
 
     /// True for a term that a force along a motion has, and no vibration.
     pub(super) const fn is_of_forces_alone(self) -> bool {
-        !self.is_damping() && !self.is_spring() && !matches!(self, Self::Change | Self::CurvedChange)
+        !self.is_damping() && !self.is_spring() && !matches!(self, Self::Change | Self::CurvedChange | Self::Position)
     }
 
     /// The power of the gain of a record to which its parameter is proportional; `exponent` is that of a power-law
@@ -137,7 +141,7 @@ impl Term {
         match self {
             Self::Stop | Self::Gap => 1.0,
             Self::QuadraticDamping => -1.0,
-            Self::CubicDamping | Self::CubicSpring => -2.0,
+            Self::CubicDamping | Self::CubicSpring | Self::Position => -2.0,
             Self::QuinticSpring => -4.0,
             Self::PowerDamping => 1.0 - exponent,
             _ => 0.0,
@@ -189,6 +193,7 @@ impl Term {
             Self::Gap => ("gap", "g", position.clone(), Bounds::NOT_NEGATIVE),
             Self::Change => (CHANGE, "w", Unit::of("1/s"), Bounds::UNBOUNDED),
             Self::CurvedChange => ("friction_change_slowing", "r", Unit::of("1/s"), Bounds::UNBOUNDED),
+            Self::Position => ("friction_over_position", "β", position.power(-2), Bounds::UNBOUNDED),
             _ => return None,
         };
         Some(Parameter::named(name, symbol, unit.to_string()).bounded(bounds))
@@ -230,6 +235,9 @@ pub(crate) const CHANGE: &str = "friction_change";
 
 /// Name of the same for each half cycle among the findings.
 pub(crate) const CHANGE_PER_HALF_CYCLE: &str = "friction_change_per_half_cycle";
+
+/// Name among the findings of the rise of the friction from the middle to the largest deflection, over its mean.
+pub(crate) const RISE_OVER_POSITION: &str = "friction_rise_over_position";
 
 /// Exponents of a power-law damping. What grows more slowly than the speed is friction, of which there is a law
 /// `power_law`.

@@ -10,7 +10,7 @@ use crate::machine::term::Term;
 /// Terms that are fitted beside the law, and parameters that are fixed.
 ///
 /// Linear, quadratic and cubic damping belong to every experiment; damping with a free power, the terms of the spring
-/// and a change of the friction during the record to vibrations; zero, inertia, stiffness, gravity, asymmetry, load
+/// and friction that changes during the record or over the position to vibrations; zero, inertia, stiffness, gravity, asymmetry, load
 /// offset, channels and delay to a [force along a motion](crate::ForceRecord):
 ///
 /// ```text
@@ -124,6 +124,18 @@ impl Terms {
         self.with(Term::CurvedChange)
     }
 
+    /// The same with friction that depends on the position, as where a flexure presses the contact while it deflects:
+    ///
+    /// ```text
+    /// N (1 + β (x² − ⟨x²⟩)) in the place of N
+    /// ```
+    ///
+    /// with ⟨ ⟩ the mean over the path slid, so that the levels are those in that mean. For laws of the sliding speed.
+    #[must_use]
+    pub fn with_friction_over_position(self) -> Self {
+        self.with(Term::Position)
+    }
+
     /// The same with damping that may come out negative. A negative damper is no damper; it says that the law lacks
     /// friction that falls with speed.
     #[must_use]
@@ -159,9 +171,10 @@ impl Terms {
                 "a spring that is not linear is a term of free vibrations; a force along a motion takes the term stiffness",
             ));
         }
-        if self.has(Term::Change) {
+        if self.has(Term::Change) || self.has(Term::Position) {
             return Err(IdentifyError::contradiction(
-                "a friction that changes during the record is a term of vibrations; cut a force along a motion into parts",
+                "a friction that changes during the record or over the position is a term of vibrations; cut a force along \
+                 a motion into parts",
             ));
         }
         if self.has(Term::PowerDamping) {
@@ -205,7 +218,8 @@ impl Terms {
     /// The terms that are no friction over the speed, the spring and a change during the record, without fixed
     /// parameters.
     pub(crate) fn beside_friction(&self) -> Self {
-        let is_beside = |term: &Term| term.is_spring() || matches!(term, Term::Change | Term::CurvedChange);
+        let is_beside =
+            |term: &Term| term.is_spring() || matches!(term, Term::Change | Term::CurvedChange | Term::Position);
         self.iter().filter(is_beside).fold(Self::NONE, Self::with)
     }
 

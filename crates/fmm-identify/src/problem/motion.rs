@@ -73,6 +73,10 @@ impl Table {
         };
         let change = beside(Term::Change).map(|change| changing(experiment, change, beside(Term::CurvedChange)));
         let load = fitted(Place::NormalLoad).unwrap_or(D::from(1.0));
+        // N (1 + β (x² − ⟨x²⟩)) as a load in the middle and its curvature.
+        let in_middle = beside(Term::Position).map(|curvature| D::from(1.0) - curvature * self.deflections.mean_square);
+        let curvature = beside(Term::Position).zip(in_middle).map(|(curvature, middle)| curvature / middle);
+        let load = in_middle.map_or(load, |middle| load * middle);
         Ok(Motion {
             oscillator: oscillator
                 .with_damping(damping)
@@ -80,6 +84,7 @@ impl Table {
             law: self.family.values(&values[self.of_law()]),
             normal_load: load * experiment.load_factor(),
             change,
+            curvature,
             initial: [values[self.shared], values[self.shared + 1]],
             force,
             tolerance: None,

@@ -9,7 +9,7 @@ use crate::finding::Source;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Form, Units};
-use crate::machine::term::{CHANGE_PER_HALF_CYCLE, Term};
+use crate::machine::term::{CHANGE_PER_HALF_CYCLE, RISE_OVER_POSITION, Term};
 use crate::machine::{Machine, Scale};
 use crate::quantities::table::{Place, Table, mass_of_stiffness};
 
@@ -101,6 +101,10 @@ impl Inputs<'_> {
         if let Some(index) = self.table.shared(Place::Term(Term::Change)).filter(|_| self.table.is_per_mass()) {
             let per_half_cycle = variable(self.shared[index], index) / (natural_frequency * 2.0);
             derived.push((Parameter::new(CHANGE_PER_HALF_CYCLE, "w/2f₀", "1"), per_half_cycle));
+        }
+        if let Some(index) = self.table.shared(Place::Term(Term::Position)) {
+            let rise = variable(self.shared[index], index) * self.table.deflections.largest_square;
+            derived.push((Parameter::new(RISE_OVER_POSITION, "β X²", "1"), rise));
         }
         // With an unknown scale the fitted values are forces already, by the channel of a measured one if there is one.
         let by_force = variable(1.0, self.shared.len() + 3);

@@ -4,6 +4,7 @@ use fmm_model::{Bounds, Parameter};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
+use crate::experiment::deflections::Deflections;
 use crate::experiment::force::ForceRecord;
 use crate::law::naming::{Form, Units};
 use crate::machine::Terms;
@@ -124,7 +125,9 @@ impl Table {
         let natural = parameters.iter().map(Parameter::bounds).collect();
         let of_motion = vec![0; records.len()];
         let (oscillator, law) = (0, 0);
-        let mut table = Self { family, terms, units, form, rows, natural, oscillator, law, shared, own, of_motion };
+        let deflections = Deflections::default();
+        let mut table =
+            Self { family, terms, units, form, rows, natural, oscillator, law, shared, own, of_motion, deflections };
         table.settle(&mut parameters)?;
         Ok((table, parameters))
     }

@@ -9,6 +9,7 @@ use fmm_model::{Bounds, Parameter, Restoring, Rounded, Scalar};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
+use crate::experiment::deflections::Deflections;
 use crate::experiment::{Experiment, reference};
 use crate::finding::Source;
 use crate::law::Law;
@@ -103,6 +104,8 @@ pub(crate) struct Table {
     pub(crate) own: Vec<usize>,
     /// Rows of each record on which its motion depends; they come first.
     pub(super) of_motion: Vec<usize>,
+    /// Deflections over which friction depends on the position; those of a measured motion are not known here.
+    pub(crate) deflections: Deflections,
 }
 
 /// Rows and parameters while they are collected.
@@ -279,9 +282,10 @@ impl Table {
         if terms.has_linear_damping() && family.has_slope() {
             return Err(IdentifyError::two_dampings(family.name));
         }
-        if terms.has(Term::Change) && !family.is_of_speed() {
+        if (terms.has(Term::Change) || terms.has(Term::Position)) && !family.is_of_speed() {
             return Err(IdentifyError::contradiction(format!(
-                "{} has an internal state; friction that changes during the record takes a law of the sliding speed",
+                "{} has an internal state; friction that changes during the record or over the position takes a law of the \
+                 sliding speed",
                 family.name
             )));
         }
@@ -298,10 +302,10 @@ impl Table {
         oscillator(machine, experiments, form, &mut rows);
         let oscillator = rows.rows.len();
         for (term, parameter) in terms.iter().zip(terms.parameters(&units.position)) {
-            if term == Term::Change {
-                rows.push(Place::Term(term), None, parameter, knowledge_of_change(machine, reference));
-            } else {
-                rows.free(Place::Term(term), parameter);
+            match term {
+                Term::Change => rows.push(Place::Term(term), None, parameter, knowledge_of_change(machine, reference)),
+                Term::Position => rows.free(Place::Term(term), parameter.bounded(reference.deflections().curvatures())),
+                _ => rows.free(Place::Term(term), parameter),
             }
         }
         let law = rows.rows.len();
@@ -317,7 +321,9 @@ impl Table {
         }
         let Builder { rows, parameters } = rows;
         let natural = parameters.iter().map(Parameter::bounds).collect();
-        let mut table = Self { family, terms, units, form, rows, natural, oscillator, law, shared, own, of_motion };
+        let deflections = reference.deflections();
+        let mut table =
+            Self { family, terms, units, form, rows, natural, oscillator, law, shared, own, of_motion, deflections };
         let mut parameters = parameters;
         table.settle(&mut parameters)?;
         Ok((table, parameters))

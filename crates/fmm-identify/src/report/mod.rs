@@ -12,7 +12,7 @@ use crate::finding::{Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
 use crate::judgement::{Comparison, ScoreTest};
-use crate::machine::term::CHANGE_PER_HALF_CYCLE;
+use crate::machine::term::{CHANGE_PER_HALF_CYCLE, RISE_OVER_POSITION};
 use crate::warning::{Warning, write_warnings};
 
 impl Identification {
@@ -89,10 +89,12 @@ impl Comparison {
             })
             .collect();
         let mut found = found;
-        let per_half_cycle = preferred.finding(CHANGE_PER_HALF_CYCLE);
-        found.extend(per_half_cycle.map(|change| format!("{CHANGE_PER_HALF_CYCLE} = {}", change.quantity())));
+        for name in [CHANGE_PER_HALF_CYCLE, RISE_OVER_POSITION] {
+            found.extend(preferred.finding(name).map(|change| format!("{name} = {}", change.quantity())));
+        }
         found.extend(self.friction_change().filter(|_| !main.is_empty()).map(|change| change.to_string()));
-        found.extend(self.unseen_damping.filter(|_| !main.is_empty()).map(|damping| damping.to_string()));
+        let unseen = [self.over_position, self.unseen_damping];
+        found.extend(unseen.into_iter().flatten().filter(|_| !main.is_empty()).map(|unseen| unseen.to_string()));
         let found =
             if found.is_empty() { "no friction or damping that it determines".to_owned() } else { found.join("; ") };
         let others: Vec<&str> =

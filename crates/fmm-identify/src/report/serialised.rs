@@ -9,8 +9,8 @@ use serde::Serialize;
 use crate::experiment::RecordSummary;
 use crate::finding::{Finding, Origin};
 use crate::identification::{FittedMotion, Identification};
-use crate::judgement::unseen_damping::UnseenDamping;
-use crate::judgement::{Comparison, FrictionChange, ScoreTest};
+use crate::judgement::unseen::{Kind, Unseen};
+use crate::judgement::{Comparison, ScoreTest};
 use crate::report::FrictionBound;
 use crate::written::written_as;
 
@@ -18,8 +18,7 @@ written_as! {
     Finding as FindingDocument,
     Identification as IdentificationDocument,
     RecordSummary as RecordDocument,
-    FrictionChange as ChangeDocument,
-    UnseenDamping as UnseenDampingDocument,
+    Unseen as UnseenDocument,
     FrictionBound as BoundDocument,
     ScoreTest as ScoreTestDocument,
     Comparison as ComparisonDocument,
@@ -215,44 +214,37 @@ impl<'a> RecordDocument<'a> {
     }
 }
 
-/// Change of the friction with each half cycle.
+/// Term that a law leaves out, of the size that the residuals ask for.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-struct ChangeDocument {
-    /// Relative change.
-    per_half_cycle: f64,
-    /// Standard uncertainty of it.
+struct UnseenDocument {
+    /// Relative change of the friction with each half cycle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    per_half_cycle: Option<f64>,
+    /// Rise of the friction from the middle to the largest deflection, over its mean.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rise: Option<f64>,
+    /// Damping per mass (1/s).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    per_mass: Option<f64>,
+    /// Standard uncertainty of the size.
     uncertainty: f64,
-    /// Relative error of the level over the change.
-    price: f64,
-}
-
-impl ChangeDocument {
-    fn of(change: &FrictionChange) -> Self {
-        Self { per_half_cycle: change.per_half_cycle, uncertainty: change.uncertainty, price: change.price }
-    }
-}
-
-/// Damping beside a friction that the residuals ask for, per mass (1/s).
-#[derive(Serialize)]
-#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-struct UnseenDampingDocument {
-    per_mass: f64,
-    /// Standard uncertainty of it.
-    uncertainty: f64,
-    /// Largest damping that would not show.
+    /// Largest size that would not show.
     largest_unseen: f64,
-    /// Relative error of the level over the damping (s).
+    /// Relative error of the level of friction over the size.
     price: f64,
 }
 
-impl UnseenDampingDocument {
-    fn of(damping: &UnseenDamping) -> Self {
+impl UnseenDocument {
+    fn of(unseen: &Unseen) -> Self {
+        let size = |kind: Kind| (unseen.kind == kind).then_some(unseen.size);
         Self {
-            per_mass: damping.per_mass,
-            uncertainty: damping.uncertainty,
-            largest_unseen: damping.largest_unseen(),
-            price: damping.price,
+            per_half_cycle: size(Kind::Change),
+            rise: size(Kind::OverPosition),
+            per_mass: size(Kind::Damping),
+            uncertainty: unseen.uncertainty,
+            largest_unseen: unseen.largest_unseen(),
+            price: unseen.price,
         }
     }
 }
@@ -311,9 +303,11 @@ struct ComparisonDocument<'a> {
     /// Terms that were not fitted, and what the residuals say of them.
     signs: &'a [ScoreTest],
     /// Of the friction of the preferred law.
-    friction_change: Option<FrictionChange>,
+    friction_change: Option<Unseen>,
+    /// The same over the position.
+    friction_over_position: Option<Unseen>,
     /// Of a preferred law without damping.
-    unseen_damping: &'a Option<UnseenDamping>,
+    unseen_damping: &'a Option<Unseen>,
     /// Of a preferred law without friction.
     friction_bound: Option<FrictionBound>,
     /// Of each model against the best one.
@@ -345,6 +339,7 @@ impl<'a> ComparisonDocument<'a> {
             complete: comparison.is_complete(),
             signs: comparison.score_tests(),
             friction_change: comparison.friction_change(),
+            friction_over_position: comparison.friction_over_position(),
             unseen_damping: &comparison.unseen_damping,
             friction_bound: comparison.friction_bound(),
             p: comparison.p_values(),

@@ -244,6 +244,11 @@ pub enum Warning {
         /// Name of the law that has none.
         law: String,
     },
+    /// The residuals ask for friction that depends on the position.
+    FrictionOverPosition {
+        /// Name of the law that has none.
+        law: String,
+    },
     /// The models are too close to prefer one.
     Undecided,
     /// A line of constant amplitude lies over the record and was fitted with it.
@@ -434,6 +439,12 @@ impl fmt::Display for Warning {
                 "the residuals of {law} ask for friction that changes during the record (wear, running in, warming, a load that \
                  varies), or for another law: fit the change (law + change, with + linear for a viscous part that stays), give the \
                  damping of the machine, or use a shorter part"
+            ),
+            Self::FrictionOverPosition { law } => write!(
+                f,
+                "the residuals of {law} ask for friction that depends on the position (a load that a flexure changes as it \
+                 deflects, a track that is not even), or for another law: fit it (law + position, with + linear for a viscous \
+                 part), or give the damping of the machine"
             ),
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::NotFitted { laws } => {

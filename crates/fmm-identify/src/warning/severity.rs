@@ -39,6 +39,7 @@ impl Warning {
             | Self::NegativeDamping { .. }
             | Self::KnowledgeContradicted { .. }
             | Self::FrictionChanges { .. }
+            | Self::FrictionOverPosition { .. }
             | Self::Undecided
             | Self::Drift
             | Self::GrowingNoise { .. }

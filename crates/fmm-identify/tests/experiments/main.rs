@@ -7,6 +7,7 @@ mod driven;
 mod force;
 mod force_curves;
 mod friction_curve;
+mod friction_over_position;
 mod impact;
 mod joint;
 mod no_friction;
