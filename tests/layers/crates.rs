@@ -1,4 +1,4 @@
-//! Crates: who uses whom, by the README and by cargo.
+//! Crates: who uses whom, by the guide and by cargo.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
@@ -109,7 +109,7 @@ impl Package {
     }
 }
 
-/// One row of the README's table of crates.
+/// One row of the guide's table of crates.
 #[derive(Debug, PartialEq)]
 struct Row {
     name: String,
@@ -133,10 +133,10 @@ fn packages() -> Vec<Package> {
     list(&metadata["packages"]).iter().cloned().map(Package).collect()
 }
 
-/// The README's section on the crates.
+/// The guide's section on the crates.
 fn section() -> &'static str {
     let (_, section) =
-        include_str!("../../README.md").split_once("\n## Crates\n").expect("README has a section on the crates");
+        include_str!("../../docs/guide.md").split_once("\n## Crates\n").expect("the guide has a section on the crates");
     section.split("\n## ").next().unwrap_or(section)
 }
 

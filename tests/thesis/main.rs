@@ -7,7 +7,7 @@ mod chapter_7;
 mod chapter_8;
 mod chapter_9;
 mod errata;
-mod readme;
+mod guide;
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;

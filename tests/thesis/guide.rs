@@ -1,4 +1,4 @@
-//! The README's table of the thesis' numbers beside ours.
+//! The table in the guide of the thesis' numbers beside ours.
 
 use fmm_thesis::CHAPTERS;
 
@@ -12,8 +12,8 @@ fn half_digit(number: &str) -> f64 {
 
 #[test]
 fn ours_are_what_the_chapters_compute() {
-    let readme = include_str!("../../README.md");
-    let rows: Vec<Vec<&str>> = readme
+    let guide = include_str!("../../docs/guide.md");
+    let rows: Vec<Vec<&str>> = guide
         .lines()
         .filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |"))
         .map(|line| line.split(" | ").collect())
