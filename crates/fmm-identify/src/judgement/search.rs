@@ -84,13 +84,13 @@ impl Inquiry<'_> {
         }
         let run = Run { decays, ..run };
         run.fit_changes(&mut found, Found::simple)?;
-        run.fit_over_position(&mut found)?;
         let (mut tests, mut left_out) = run.score_tests(&found);
         let changes = found.changes();
         if changes || found.asks_for_more(&tests) {
             run.fit_further(&mut found, &mut tests, changes)?;
         }
         run.fit_changes(&mut found, Found::preferred)?;
+        run.fit_over_position(&mut found)?;
         if self.machine.steadiness().is_some() {
             run.allow_changes(&mut found)?;
         }
@@ -182,9 +182,9 @@ impl Found {
         self.preferred().is_some_and(|preferred| preferred.structure.is_correlated())
     }
 
-    /// The best law is one of friction that changes during the record or over the position.
+    /// The best law is one of friction that changes during the record.
     fn changes(&self) -> bool {
-        self.preferred().is_some_and(is_varied)
+        self.preferred().is_some_and(|preferred| preferred.fitted.model.terms.has(Term::Change))
     }
 
     fn preferred(&self) -> Option<&Identification> {
@@ -192,10 +192,10 @@ impl Found {
         Some(&self.identifications[judgement.preferred])
     }
 
-    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it or a dependence
-    /// on the position if that is best.
+    /// The fit whose residuals are asked for more: by Coulomb and viscous friction, with a change of it if that is
+    /// best.
     fn base(&self) -> Option<&Identification> {
-        self.preferred().filter(|preferred| is_varied(preferred)).or_else(|| self.simple())
+        self.preferred().filter(|preferred| preferred.fitted.model.terms.has(Term::Change)).or_else(|| self.simple())
     }
 
     /// The fit by Coulomb and viscous friction, whatever is held of it, with what else acts if there is one.
@@ -203,12 +203,6 @@ impl Found {
         let all = || self.identifications.iter().filter(|found| found.family().name == CoulombViscous::NAME);
         all().find(|found| found.fitted.model.terms.iter().eq(self.beside.iter())).or_else(|| all().next())
     }
-}
-
-/// Friction by the law changes during the record or over the position.
-fn is_varied(found: &Identification) -> bool {
-    let terms = &found.fitted.model.terms;
-    terms.has(Term::Change) || terms.has(Term::Position)
 }
 
 /// The law has presliding.
@@ -440,8 +434,8 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// Adds a fit of the simple law with friction that depends on the position, if its residuals show that. Laws that
-    /// fall with the speed and a change that slows down look like it, and are not asked.
+    /// Adds a fit of the simple law with friction that depends on the position, if its residuals show that: it is one
+    /// more explanation beside all others, on which none of them is built.
     fn fit_over_position(&self, found: &mut Found) -> Result<(), IdentifyError> {
         let is_shown =
             |base: &&Identification| Unseen::over_position(base, self.decays).is_some_and(|unseen| unseen.is_shown());

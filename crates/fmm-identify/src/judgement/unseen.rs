@@ -110,6 +110,10 @@ impl fmt::Display for Unseen {
                     "its residuals ask for friction that {word} by {size:.2} % ± {u:.2} % with each half cycle"
                 );
             }
+            // Beyond its own size, one step of least squares tells that there is something, and not how much.
+            Kind::OverPosition if self.is_shown() && self.size.abs() > 1.0 => {
+                return f.write_str("its residuals ask for friction that depends on the position");
+            }
             Kind::OverPosition if self.is_shown() => {
                 let word = if falls { "falls" } else { "rises" };
                 return write!(
@@ -175,6 +179,7 @@ mod tests {
         assert_eq!(of(-0.01, 0.02).to_string(), said);
         let said = "its residuals ask for friction that falls by 10 % ± 2 % towards the largest deflection";
         assert_eq!(of(-0.1, 0.02).to_string(), said);
+        assert_eq!(of(5.6, 1.2).to_string(), "its residuals ask for friction that depends on the position");
         assert_eq!(of(0.1, 0.9).to_string(), "if it is the same at all positions (the record hardly tells)");
     }
 }
