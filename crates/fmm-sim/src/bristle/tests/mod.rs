@@ -312,12 +312,14 @@ fn a_contact_that_nothing_drives_rests_until_something_does() {
 /// The decay of a LuGre contact ends in rest within rounding, with few events on the way.
 #[test]
 fn a_decay_comes_to_rest() {
-    let motion = Bristle::default().run(&scenario(INPUTS, lugre), &Sampling::uniform(0.1, 600).unwrap()).unwrap();
+    let scenario = scenario::<f64, _>(INPUTS, lugre);
+    let motion = Bristle::default().run(&scenario, &Sampling::uniform(0.1, 600).unwrap()).unwrap();
     let rest = motion.rest().expect("it rests within 60 s");
     assert_eq!(rest.kind, EventKind::Stop);
     // It swings at 13 Hz on its bristles, with a damping of 1/s.
     assert!(motion.events().len() < 1500, "{} events", motion.events().len());
-    let after = motion.position().values().iter().skip((rest.time / 0.1) as usize + 1);
+    let at_rest: f64 = rest.time / 0.1;
+    let after = motion.position().values().iter().skip(at_rest as usize + 1);
     assert!(after.clone().count() > 10 && after.clone().all(|x| *x == rest.position));
 }
 
