@@ -181,7 +181,7 @@ fn a_table_is_read_as_it_is_meant() {
 }
 
 #[test]
-fn the_readme_says_who_uses_whom() {
+fn the_guide_says_who_uses_whom() {
     let packages = packages();
     let published: Vec<&Package> = packages.iter().filter(|package| package.is_published()).collect();
     let ours: BTreeSet<&str> = published.iter().map(|package| package.name()).collect();

@@ -6,7 +6,6 @@ use super::source::{crates, files, first_names, text, words};
 
 /// Names at a crate's root that nobody else names; the list only shrinks.
 const UNUSED: &[&str] = &[
-    "fmm_frf::DampingTerm",
     "fmm_identify::ImpactSummary",
     "fmm_identify::PredictiveCheck",
     "fmm_identify::RecordSummary",
