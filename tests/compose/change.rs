@@ -41,7 +41,7 @@ fn distance(finding: &Finding, truth: f64) -> f64 {
 #[test]
 fn a_change_is_named_and_the_level_is_that_in_the_mean_over_the_path() {
     let wear = searched("wear_0.2_percent", &machine(2.0, 1.0659));
-    let change = finding(&wear, "friction_change.size");
+    let change = finding(&wear, "friction_change_per_half_cycle");
     assert!(change.value() < 0.0 && distance(change, -0.002) < 2.5, "{wear}");
     // 0.25 at first, less 0.2 % with each of twenty half cycles of which the first are the longest.
     assert!(distance(finding(&wear, "mu"), 0.2465) < 2.5, "{wear}");
@@ -50,9 +50,9 @@ fn a_change_is_named_and_the_level_is_that_in_the_mean_over_the_path() {
         ("load_over_time_9", 10.194_862_3, 6.464_986_19, 0.1102),
     ] {
         let found = searched(name, &machine(mass, load));
-        assert!(finding(&found, "friction_change.size").value() > 0.0, "{found}");
+        assert!(finding(&found, "friction_change_per_half_cycle").value() > 0.0, "{found}");
         assert!(distance(finding(&found, "mu"), mu) < 2.5, "{found}");
-        assert!(found.headline().contains("friction_change.size"), "{found}");
+        assert!(found.headline().contains("friction_change_per_half_cycle"), "{found}");
     }
 }
 
@@ -78,7 +78,7 @@ fn a_known_damping_shows_the_change() {
     let damping = Known::new(0.1262 * 2.244_770_56, 1e-4).unwrap();
     let found = searched("wear_1_percent", &machine(2.244_770_56, 2.329_165_36).with_damping(damping).unwrap());
     assert!(found.preferred().law().ends_with("+ change"), "{found}");
-    let change = finding(&found, "friction_change.size");
+    let change = finding(&found, "friction_change_per_half_cycle");
     assert!(distance(change, -0.01) < 2.5 && change.uncertainty().unwrap() < 0.002, "{found}");
     assert!(distance(finding(&found, "mu"), 0.3133) < 2.0, "{found}");
 }

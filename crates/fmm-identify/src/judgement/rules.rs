@@ -102,6 +102,10 @@ pub(crate) const LEAST_CHANGE: f64 = 1e-6;
 /// two sides, as every record is asked.
 pub(crate) const SHOWN_CHANGE: f64 = 3.0;
 
+/// Rise of the friction to the largest deflection, over its mean, from which on one step of least squares tells nothing of
+/// it (1). Origin: friction that has doubled; another cause has residuals that ask for several times as much.
+pub(crate) const MOST_RISE: f64 = 1.0;
+
 /// Standard uncertainties beyond the best value up to which a change or a damping that is not shown may reach (1).
 /// Origin: one in 44 on one side.
 pub(crate) const REACH: f64 = 2.0;

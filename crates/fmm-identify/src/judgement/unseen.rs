@@ -8,7 +8,7 @@ use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
 use crate::judgement::asked::Asked;
 use crate::judgement::change::{self, with_position};
-use crate::judgement::rules::{REACH, SHOWN_CHANGE, SHOWN_DAMPING};
+use crate::judgement::rules::{MOST_RISE, REACH, SHOWN_CHANGE, SHOWN_DAMPING};
 use crate::machine::term::Term;
 
 /// A term that the preferred law leaves out: the size that the residuals ask for by one step of least squares from the
@@ -82,7 +82,8 @@ impl Unseen {
 
     /// True if the residuals ask for more than chance alone does in one record of 370.
     pub fn is_shown(&self) -> bool {
-        self.size.abs() > SHOWN_CHANGE * self.uncertainty
+        let is_small = self.kind != Kind::OverPosition || self.size.abs() < MOST_RISE;
+        is_small && self.size.abs() > SHOWN_CHANGE * self.uncertainty
     }
 
     /// The largest size that the records would not show: that above which the term would be preferred, or that up to
@@ -109,10 +110,6 @@ impl fmt::Display for Unseen {
                     f,
                     "its residuals ask for friction that {word} by {size:.2} % ± {u:.2} % with each half cycle"
                 );
-            }
-            // Beyond its own size, one step of least squares tells that there is something, and not how much.
-            Kind::OverPosition if self.is_shown() && self.size.abs() > 1.0 => {
-                return f.write_str("its residuals ask for friction that depends on the position");
             }
             Kind::OverPosition if self.is_shown() => {
                 let word = if falls { "falls" } else { "rises" };
@@ -179,7 +176,7 @@ mod tests {
         assert_eq!(of(-0.01, 0.02).to_string(), said);
         let said = "its residuals ask for friction that falls by 10 % ± 2 % towards the largest deflection";
         assert_eq!(of(-0.1, 0.02).to_string(), said);
-        assert_eq!(of(5.6, 1.2).to_string(), "its residuals ask for friction that depends on the position");
+        assert_eq!(of(5.6, 1.2).to_string(), "if it is the same at all positions (the record hardly tells)");
         assert_eq!(of(0.1, 0.9).to_string(), "if it is the same at all positions (the record hardly tells)");
     }
 }
