@@ -33,10 +33,20 @@ pub(super) struct Integrator<'a, D, L: ?Sized> {
     angular: f64,
     /// Displacement on the spring that the static level holds (m); a smaller motion does not matter.
     held: f64,
+    /// Scale of a motion that no spring turns round within the sampled time; `None` with such a spring.
+    run: Option<Run>,
     /// Length of the step to try next (s).
     length: f64,
     budget: usize,
     refiner: Refiner,
+}
+
+/// Scale of a motion without a spring. An acceleration tells how fast it becomes for as long as a step alone.
+struct Run {
+    /// Sampled time (s).
+    duration: f64,
+    /// Largest speed of the stretch (m/s).
+    fastest: f64,
 }
 
 impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
@@ -54,6 +64,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
             tolerance,
             angular,
             held,
+            run: (natural * end < 1.0 && end > 0.0).then_some(Run { duration: end, fastest: 0.0 }),
             length: 0.1 / angular,
             budget: STEP_BUDGET,
             refiner: Refiner::new(D::DIRECTIONS, tolerance, angular),
@@ -71,10 +82,21 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
 
     /// Amplitudes (m, m/s) that errors are relative to, where the machine vibrates with `angular` (rad/s).
     fn scale(&self, state: State<D>, acceleration: D, angular: f64) -> State<f64> {
-        let velocity = state.velocity.value().abs()
-            + self.angular * (state.position.value().abs() + self.held)
-            + acceleration.value().abs() / angular;
-        let velocity = velocity.max(f64::MIN_POSITIVE);
+        let speed = state.velocity.value().abs();
+        let speed = match self.run {
+            Some(Run { fastest, .. }) => speed.max(fastest),
+            None => speed + self.angular * (state.position.value().abs() + self.held),
+        };
+        self.reached_by(speed.max(f64::MIN_POSITIVE), acceleration.value().abs(), angular)
+    }
+
+    /// Amplitudes of a motion of this `speed` (m/s) that an `acceleration` (m/s²) makes faster.
+    fn reached_by(&self, speed: f64, acceleration: f64, angular: f64) -> State<f64> {
+        if let Some(Run { duration, .. }) = self.run {
+            let velocity = speed + acceleration * self.length.min(duration);
+            return State { position: velocity * duration, velocity };
+        }
+        let velocity = speed + acceleration / angular;
         State { position: velocity / angular, velocity }
     }
 
@@ -313,6 +335,9 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
         self.field.spring.begin(phase.state.position, phase.direction);
         let mut at = self.depart(phase, phase.time, phase.state, self.field.first_side(phase));
         let longest = self.longest(phase);
+        if let Some(run) = &mut self.run {
+            run.fastest = phase.state.velocity.value().abs();
+        }
         while at.time < phase.limit {
             let rest = phase.limit - at.time;
             let mut length = self.length.min(longest);
@@ -342,9 +367,8 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
             if self.field.is_driven {
                 // A motion may begin from nothing; then it is as large as the force makes it.
                 let force = |time| phase.piece.force(time).value();
-                let rise = (force(at.time + length) - force(at.time)).abs() * self.field.per_mass.value() / angular;
-                scale.velocity += rise;
-                scale.position += rise / angular;
+                let rise = (force(at.time + length) - force(at.time)).abs() * self.field.per_mass.value();
+                scale = self.reached_by(scale.velocity, rise, angular);
             }
             let mut error = step.error(scale) / self.tolerance;
             // In a creeping motion, values stay good beyond the limit of stability for long, but derivatives grow.
@@ -393,6 +417,9 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
             let by_speed = self.refiner.refine(&self.field, phase, &at, &mut step);
             self.record(phase, &at, &mut step, by_speed.as_ref(), (next, stop), recorder)?;
             at = Progress { time: next, state: step.end, acceleration: step.last_acceleration(), side: at.side };
+            if let Some(run) = &mut self.run {
+                run.fastest = run.fastest.max(at.state.velocity.value().abs());
+            }
             SimulationError::require_restoring(self.field.oscillator, at.time, at.state.position)?;
             if let Some(corner) = passed {
                 self.pass(phase, &mut at, corner);

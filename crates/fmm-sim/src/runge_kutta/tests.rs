@@ -1,7 +1,7 @@
 //! Derivatives under steep laws and laws that jump: identities that hold whatever the motion is, and a motion that
 //! creeps.
 
-use fmm_friction::{Karnopp, LawFamily, MakkarDixon, PowerLaw, SlidingLaw, Stribeck};
+use fmm_friction::{Coulomb, Karnopp, LawFamily, MakkarDixon, PowerLaw, SlidingLaw, Stribeck};
 use fmm_model::{Damping, Dual, Oscillator, Scalar};
 
 use super::*;
@@ -121,5 +121,40 @@ fn derivatives_of_a_motion_that_creeps_stay_small() {
         assert!(largest * value < 1.0, "direction {direction}: {largest:e}");
         let off = fine.iter().zip(&coarse).fold(0.0f64, |off, (fine, coarse)| off.max((fine - coarse).abs()));
         assert!(off < 3e-3 * largest, "direction {direction}: {off:e} off, of {largest:e}");
+    }
+}
+
+/// A run-down by dry friction and drag, v' = −a − c v²: t = atan(v₀ √(c/a))/√(a c), x = ln(1 + c v₀²/a)/(2c), however long
+/// it was sampled and wherever it began.
+#[test]
+fn a_run_down_without_a_spring_keeps_its_digits() {
+    let (dry, drag) = (2.0, 0.3);
+    for (speed, end, begin) in
+        [(2.0, 8.0, 0.0), (2.0, 800.0, 0.0), (50.0, 60.0, 1e3), (50.0, 6e4, 0.0), (1e-3, 1.0, 0.0)]
+    {
+        let machine = Oscillator::new(1.0, 0.0).unwrap().with_damping(Damping::new(0.0, drag).unwrap());
+        let scenario = Scenario::new(machine, Coulomb::new(0.1 * dry).unwrap(), 10.0).unwrap();
+        let scenario = scenario.starting_at(begin, speed).unwrap();
+        let motion = RungeKutta::default().run(&scenario, &Sampling::uniform(end / 8.0, 8).unwrap()).unwrap();
+        let rest = motion.rest().expect("friction stops it");
+        let time = (speed * (drag / dry).sqrt()).atan() / (dry * drag).sqrt();
+        let path = (drag * speed * speed / dry).ln_1p() / (2.0 * drag);
+        assert!((rest.time / time - 1.0).abs() < 1e-13, "{speed} m/s: {} s, {time} s", rest.time);
+        let error = (rest.position - begin - path).abs();
+        assert!(error < 1e-13 * path + 2.0 * f64::EPSILON * begin, "{speed} m/s, {end} s: {error} m");
+    }
+}
+
+/// A block that a force moves from rest, m v' = F t − friction, is as exact as one that runs down.
+#[test]
+fn a_block_that_begins_from_rest_keeps_its_digits() {
+    for end in [4.0, 4e3] {
+        let scenario = Scenario::new(Oscillator::new(1.0, 0.0).unwrap(), Coulomb::new(0.2).unwrap(), 10.0).unwrap();
+        let scenario = scenario.driven_by(Excitation::ramp(1.0).unwrap());
+        let motion = RungeKutta::default().run(&scenario, &Sampling::uniform(end / 4.0, 5).unwrap()).unwrap();
+        // It breaks away at 2 s and has (t − 2 s)²/2 from there on.
+        let expected = 0.5 * (end - 2.0).powi(2);
+        let reached = motion.velocity().values()[4];
+        assert!((reached / expected - 1.0).abs() < 1e-13, "{end} s: {reached} m/s, {expected} m/s");
     }
 }
