@@ -2,6 +2,7 @@
 
 mod curvature;
 mod differences;
+mod evaluations;
 mod refit;
 mod robust;
 mod searches;

@@ -6,6 +6,7 @@ mod design;
 mod driven;
 mod force;
 mod force_curves;
+mod force_models;
 mod friction_curve;
 mod friction_over_position;
 mod impact;
