@@ -363,15 +363,6 @@ fn to_three_digits(value: f64) -> String {
     Rounded::new(rounded, None).to_string()
 }
 
-/// End of the sentence on friction that changes.
-const CHANGES: &str = "changes during the record (wear, running in, warming, a load that varies), or for another law: fit \
-    the change (law + change, with + linear for a viscous part that stays), give the damping of the machine, or use a \
-    shorter part";
-
-/// End of the sentence on friction over the position.
-const OVER_POSITION: &str = "depends on the position (a load that a flexure changes as it deflects, a track that is not \
-    even), or for another law: fit it (law + position, with + linear for a viscous part), or give the damping of the machine";
-
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -443,10 +434,6 @@ impl fmt::Display for Warning {
             Self::StaticLevelHeld { parameter } => {
                 write!(f, "{parameter} was held at the sliding level: a motion depends on it only in where it stops")
             }
-            Self::FrictionChanges { law } => write!(f, "the residuals of {law} ask for friction that {CHANGES}"),
-            Self::FrictionOverPosition { law } => {
-                write!(f, "the residuals of {law} ask for friction that {OVER_POSITION}")
-            }
             Self::OtherLaw { law, sentence } => write!(f, "{law}: {sentence}"),
             Self::NotFitted { laws } => {
                 write!(f, "{laws}: tried, but not fitted to the end; so far other laws describe the record better")
@@ -470,7 +457,7 @@ impl fmt::Display for Warning {
             | Self::CoarsePulse { .. }
             | Self::SpikesBridged { .. }
             | Self::NotAtRest { .. } => self.write_of_blows(f),
-            _ => self.write_of_disturbances(f),
+            _ => self.write_of_variation(f),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Sentences of warnings about disturbances of a record, about impacts and about forces along motions.
+//! Sentences of warnings about friction that varies, about disturbances of a record, impacts and forces along motions.
 
 use std::fmt;
 
@@ -10,8 +10,28 @@ use crate::warning::{Warning, to_three_digits};
 const NOTABLE: f64 = 1.1;
 
 impl Warning {
+    /// The sentences of warnings about friction that varies, and of those about disturbances and forces; nothing for
+    /// others.
+    pub(super) fn write_of_variation(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FrictionChanges { law } => write!(
+                f,
+                "the residuals of {law} ask for friction that changes during the record (wear, running in, warming, a load \
+                 that varies), or for another law: fit the change (law + change, with + linear for a viscous part that \
+                 stays), give the damping of the machine, or use a shorter part"
+            ),
+            Self::FrictionOverPosition { law } => write!(
+                f,
+                "the residuals of {law} ask for friction that depends on the position (a load that a flexure changes as it \
+                 deflects, a track that is not even), or for another law: fit it (law + position, with + linear for a \
+                 viscous part), or give the damping of the machine"
+            ),
+            _ => self.write_of_disturbances(f),
+        }
+    }
+
     /// The sentences of these warnings and of those about forces along motions; nothing for others.
-    pub(crate) fn write_of_disturbances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn write_of_disturbances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FurtherRelease { time } => write!(
                 f,
