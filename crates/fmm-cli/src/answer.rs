@@ -17,7 +17,7 @@ pub enum Detail {
     Full,
 }
 
-/// What a command found.
+/// Findings of a command.
 pub trait Answer: Send + Sync {
     /// Screen of text.
     ///

@@ -193,7 +193,7 @@ pub(crate) struct Content<'a> {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Mode {
-    /// Hz.
+    /// Frequency of the line (Hz).
     frequency: f64,
     /// In the unit of the record.
     amplitude: f64,
@@ -216,14 +216,14 @@ struct Point {
     time: f64,
     /// In `unit_of_amplitude`.
     amplitude_u: [f64; 2],
-    /// Hz.
+    /// Frequency (Hz).
     frequency_u: [f64; 2],
     /// Equivalent damping per mass (1/s).
     damping_u: [f64; 2],
     damping_ratio_u: Option<[f64; 2]>,
     quality_factor_u: Option<[f64; 2]>,
     logarithmic_decrement_u: Option<[f64; 2]>,
-    /// s.
+    /// Time constant (s).
     time_constant_u: Option<[f64; 2]>,
 }
 

@@ -149,7 +149,7 @@ pub fn answer(
     })
 }
 
-/// What was typed.
+/// The command line as it was typed.
 fn line(arguments: &[OsString]) -> String {
     let rest: Vec<_> = arguments.iter().skip(1).map(|argument| argument.to_string_lossy()).collect();
     format!("fmm {}", rest.join(" "))

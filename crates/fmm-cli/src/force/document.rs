@@ -24,7 +24,7 @@ pub(crate) struct Content<'a> {
     /// Onsets of sliding.
     onsets: Vec<Vec<OfOnset>>,
     models: Vec<Tried<'a>>,
-    /// Tried that is preferred.
+    /// Model that is preferred.
     preferred: &'a str,
     /// `fit`, or `prediction` of the records to which nothing was fitted.
     preferred_by: &'static str,
@@ -72,9 +72,9 @@ struct Loop {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct OfOnset {
-    /// s.
+    /// Begin (s).
     begin: f64,
-    /// 1 or -1.
+    /// Direction of the motion, 1 or -1.
     direction: f64,
     stiffness_u: [f64; 2],
     breakaway_u: [f64; 2],

@@ -110,7 +110,7 @@ pub(crate) struct Content<'a> {
     /// Rate of an exponential window, which is taken out of the results again (1/s).
     decay_rate_per_s: f64,
     averages: f64,
-    /// N s, one a trial.
+    /// Impulses (N s), one a trial.
     impulses_ns: &'a [f64],
     pulses: Vec<OfPulse>,
     frequencies_hz: &'a [f64],

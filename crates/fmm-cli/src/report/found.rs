@@ -45,7 +45,7 @@ pub(crate) struct Found {
     pub(crate) posterior: Option<Posterior>,
     /// Why there is no posterior though one was asked for.
     pub(crate) failure: Option<String>,
-    /// What was typed.
+    /// The command line as it was typed.
     pub(crate) command: String,
     /// Digest of the file.
     pub(crate) sha256: String,

@@ -27,7 +27,7 @@ pub(crate) struct File {
     pub(crate) excitation: Vec<Drive>,
     #[serde(default)]
     pub(crate) initial: Initial,
-    /// s.
+    /// Simulated time (s).
     pub(crate) duration: Option<f64>,
     pub(crate) output: Option<Output>,
     #[serde(default)]

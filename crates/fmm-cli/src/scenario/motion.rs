@@ -21,7 +21,7 @@ pub(crate) struct Motion {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Incident {
-    /// s.
+    /// Time (s).
     pub(crate) t: f64,
     /// Kind of the event.
     pub(crate) kind: String,
@@ -46,7 +46,7 @@ pub(crate) struct Incident {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Series {
-    /// s.
+    /// Times (s).
     pub(crate) t: Vec<f64>,
     /// m.
     pub(crate) x: Vec<f64>,
