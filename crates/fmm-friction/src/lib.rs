@@ -42,6 +42,8 @@
 //! each kind of law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name. A family states its
 //! [`SearchRole`] too: the stages at which a search for the law of a record tries it.
 //!
+//! [`FeedForward`] follows a law with internal state along given velocities, for a controller that compensates friction.
+//!
 //! # Units and conventions
 //!
 //! All laws give a *coefficient*, the friction force divided by the normal load. With a normal load of 1 the
@@ -86,9 +88,9 @@ mod tests;
 
 pub use catalogue::{catalogue, family_named};
 pub use law::{
-    Affine, BristleLaw, Element, Expansion, FamilyMember, FamilyVisitor, LawError, LawFamily, LawKind, LawParameter,
-    LawVisitor, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole, SearchStage, SearchTrial, SlidingLaw,
-    SpecialCase,
+    Affine, BristleLaw, Element, Expansion, FamilyMember, FamilyVisitor, FeedForward, LawError, LawFamily, LawKind,
+    LawParameter, LawVisitor, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole, SearchStage,
+    SearchTrial, SlidingLaw, SpecialCase,
 };
 pub use laws::{
     AccelerationCoulomb, Berger, BoucWen, BoucWenByLevel, Coulomb, CoulombStatic, CoulombViscous, Dahl,

@@ -7,7 +7,7 @@ use core::alloc::{GlobalAlloc, Layout};
 use core::panic::PanicInfo;
 use core::ptr::null_mut;
 
-use fmm_friction::{BristleLaw, Dahl, LawError, LawFamily, SlidingLaw, Stribeck};
+use fmm_friction::{Dahl, FeedForward, LawError, LawFamily, SlidingLaw, Stribeck};
 use fmm_model::{Dual, Scalar};
 
 /// A heap without memory: whoever asks for some ends the program.
@@ -61,10 +61,8 @@ fn compensate() -> Result<bool, LawError> {
     let friction = law.coefficient(Dual::variable(0.1, 0));
     let falls = near(friction.value(), 0.236_787_944_117_144_22) && near(friction.partial(0), -0.367_879_441_171_442_3);
     // Bristles that yield at 3 µm, pulled by 2 µm: μ (1 − e^(−2/3)).
-    let law = Dahl::new(0.3, 1e5, 1.0)?;
-    let mut state = [0.0];
-    let holds =
-        law.carry(1e-3, 2e-3, &mut state) && near(law.coefficient(1e-3, &state, &[0.0]), 0.145_974_864_290_222_1);
+    let mut friction = FeedForward::new(Dahl::new(0.3, 1e5, 1.0)?, [0.0])?;
+    let holds = friction.step(1e-3, 2e-3).is_some_and(|coefficient| near(coefficient, 0.145_974_864_290_222_1));
     Ok(falls && holds)
 }
 

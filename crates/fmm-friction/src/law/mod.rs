@@ -3,6 +3,7 @@
 mod error;
 pub(crate) mod expansion;
 pub(crate) mod family;
+mod feed_forward;
 pub(crate) mod functions;
 mod kind;
 pub(crate) mod parameter;
@@ -14,6 +15,7 @@ pub use error::LawError;
 pub(crate) use error::digits;
 pub use expansion::Expansion;
 pub use family::{FamilyMember, FamilyVisitor, LawFamily, Reparametrisation, SpecialCase};
+pub use feed_forward::FeedForward;
 pub use kind::{LawKind, LawVisitor};
 pub use parameter::{LawParameter, Role};
 pub use search::{SearchRole, SearchStage, SearchTrial};
@@ -155,6 +157,15 @@ pub trait BristleLaw<D: Scalar> {
     fn carry(&self, velocity: D, duration: D, state: &mut [D]) -> bool {
         let _ = (velocity, duration, state);
         false
+    }
+
+    /// Like [`carry`](Self::carry), from elements that slide as `regime` says, which is theirs at the end afterwards. They
+    /// go on only if the velocity has not passed zero since.
+    ///
+    /// A law whose state does not tell which elements slide ([`Gms`](crate::Gms)) has this form only.
+    fn carry_on(&self, velocity: D, duration: D, state: &mut [D], regime: &mut Regime) -> bool {
+        let _ = regime;
+        self.carry(velocity, duration, state)
     }
 
     /// Computes the Taylor coefficients of this `order` of rate and friction coefficient; known are those of lower

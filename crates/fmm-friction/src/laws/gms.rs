@@ -93,6 +93,27 @@ impl<D: Scalar> BristleLaw<D> for Gms<D> {
         state.iter().fold(self.curve.viscous * velocity, |sum, part| sum + *part)
     }
 
+    /// At constant velocity an element that holds follows the path up to its share, and one that slides tends
+    /// exponentially to it.
+    fn carry_on(&self, velocity: D, duration: D, state: &mut [D], regime: &mut Regime) -> bool {
+        let level = self.curve.dry_coefficient(velocity.abs());
+        let left = (-self.attraction * duration / level).exp();
+        for (index, ((stiffness, share), part)) in self.elements.iter().zip(state).enumerate() {
+            let end = *share * level * direction(velocity);
+            let reserve = (end - *part) * direction(velocity);
+            let holds = !regime.slides(index) && reserve.value() > 0.0;
+            let bent = *stiffness * velocity * duration;
+            if holds && bent.value().abs() < reserve.value() {
+                *part += bent;
+                continue;
+            }
+            *regime = regime.sliding(index);
+            // One that reaches its share stays there.
+            *part = if holds { end } else { end + (*part - end) * left };
+        }
+        true
+    }
+
     fn bound(&self, index: usize) -> D {
         self.elements[index].1 * self.curve.breakaway
     }

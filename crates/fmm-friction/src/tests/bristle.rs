@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::sliding::{log_uniform, random, rounding, values};
-use crate::law::{BristleLaw, LawFamily, Regime, SlidingLaw};
+use crate::law::{BristleLaw, FeedForward, LawError, LawFamily, Regime, SlidingLaw};
 use crate::laws::{BoucWen, Dahl, Gms, LuGre, MaxwellSlip, Stribeck};
 
 fn rate<L: BristleLaw<f64>>(law: &L, velocity: f64, state: &[f64], regime: Regime) -> Vec<f64> {
@@ -246,4 +246,91 @@ fn rates_have_their_derivatives() {
     check::<LuGre>();
     check::<BoucWen>();
     check::<Dahl>();
+}
+
+/// Velocities (m/s) of a motion to and fro that rests at times, each held for 1 ms.
+fn velocities() -> impl Iterator<Item = f64> {
+    (0..60).map(|step| {
+        let velocity = 3e-3 * (0.4 * f64::from(step)).sin() + 1e-3 * (1.7 * f64::from(step)).cos();
+        if step % 7 == 3 { 0.0 } else { velocity }
+    })
+}
+
+/// Steps in closed form against marching in small ones, which see an element slide too late by up to one of 2000; and a
+/// step in two parts.
+fn is_followed<L: BristleLaw<f64> + Clone, const N: usize>(law: &L, what: &str) {
+    let mut followed = FeedForward::new(law.clone(), [0.0; N]).unwrap();
+    let mut halved = FeedForward::new(law.clone(), [0.0; N]).unwrap();
+    let (mut marched, mut regime, mut before) = ([0.0; N], Regime::ALL_HOLD, 0.0);
+    let most: f64 = (0..N).map(|index| law.bound(index)).sum();
+    for velocity in velocities() {
+        let coefficient = followed.step(velocity, 1e-3).unwrap();
+        halved.step(velocity, 3e-4).unwrap();
+        let twice = halved.step(velocity, 7e-4).unwrap();
+        assert!((coefficient - twice).abs() < 1e-13, "{what}: {coefficient} and {twice} at {velocity} m/s");
+        if velocity * before <= 0.0 {
+            regime = Regime::ALL_HOLD;
+        }
+        before = velocity;
+        for _ in 0..2000 {
+            for index in 0..N {
+                if velocity != 0.0 && law.reserve(index, velocity, &marched).is_some_and(|reserve| reserve <= 0.0) {
+                    regime = regime.sliding(index);
+                }
+            }
+            let rates = rate(law, velocity, &marched, regime);
+            // The midpoint, which is of second order.
+            let middle: Vec<f64> = marched.iter().zip(&rates).map(|(state, rate)| state + 0.25e-6 * rate).collect();
+            let rates = rate(law, velocity, &middle, regime);
+            marched.iter_mut().zip(rates).for_each(|(state, rate)| *state += 0.5e-6 * rate);
+        }
+        for (index, (state, expected)) in followed.state().iter().zip(marched).enumerate() {
+            let off = (state - expected).abs();
+            assert!(off < 1e-3 * most, "{what}, state {index}: {state} instead of {expected} at {velocity} m/s");
+        }
+        let rates = rate(law, velocity, followed.state(), followed.regime());
+        assert_eq!(coefficient, law.coefficient(velocity, followed.state(), &rates), "{what}");
+    }
+}
+
+#[test]
+fn laws_are_followed_step_by_step() {
+    let curve = Stribeck::new(0.2, 0.3, 2e-3, 2.0, 0.5).unwrap();
+    is_followed::<_, 1>(&LuGre::new(0.2, 0.3, 2e-3, 2.0, 1e5, 300.0, 0.5).unwrap(), "LuGre");
+    for exponent in [0.5, 1.0, 2.0] {
+        is_followed::<_, 1>(&Dahl::new(0.3, 1e5, exponent).unwrap(), "Dahl");
+    }
+    is_followed::<_, 2>(&MaxwellSlip::new(&[(1e5, 0.1), (4e4, 0.2)]).unwrap(), "Maxwell slip");
+    is_followed::<_, 3>(&Gms::new(curve, 50.0, &[(2e5, 0.2), (1e5, 0.3), (3e4, 0.5)]).unwrap(), "GMS");
+}
+
+/// An element of GMS that slides goes on although the level has risen above it; its state alone does not say so.
+#[test]
+fn elements_that_slide_are_remembered() {
+    let curve = Stribeck::new(0.1, 0.3, 1e-3, 2.0, 0.0).unwrap();
+    let mut friction = FeedForward::new(Gms::new(curve, 10.0, &[(1e5, 1.0)]).unwrap(), [0.0]).unwrap();
+    assert!((friction.step(0.1, 1.0).unwrap() - 0.1).abs() < 1e-15);
+    // Towards 0.3 with the time constant s/C = 0.03 s, where one that holds would reach it after 2 µm.
+    let slow = friction.step(1e-9, 0.03).unwrap();
+    assert!((slow - (0.3 - 0.2 * f64::exp(-1.0))).abs() < 1e-12, "{slow}");
+    assert!(friction.regime().slides(0));
+    friction.step(0.0, 1.0).unwrap();
+    assert!(!friction.regime().slides(0));
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused() {
+    let dahl = Dahl::new(0.3, 1e5, 1.0).unwrap();
+    assert!(matches!(FeedForward::new(dahl, [0.0, 0.0]), Err(LawError::WrongCount { got: 2, .. })));
+    for state in [4e-6, f64::NAN] {
+        assert!(matches!(FeedForward::new(dahl, [state]), Err(LawError::OutOfBounds { .. })));
+    }
+    let loops = BoucWen::new(1e5, 1.0, 1e5, 0.0, 1.0).unwrap();
+    assert!(matches!(FeedForward::new(loops, [0.0]), Err(LawError::Contradiction { .. })));
+    let mut friction = FeedForward::new(dahl, [1e-6]).unwrap();
+    for (velocity, duration) in [(f64::NAN, 1e-3), (f64::INFINITY, 1e-3), (1e-3, f64::NAN), (1e-3, -1e-3)] {
+        assert_eq!(friction.step(velocity, duration), None, "{velocity} m/s, {duration} s");
+    }
+    assert_eq!(friction.state(), &[1e-6]);
+    assert_eq!(friction.step(0.0, 1.0), Some(1e5 * 1e-6));
 }
