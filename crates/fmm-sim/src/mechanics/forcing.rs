@@ -1,5 +1,6 @@
 //! The excitations of a scenario, cut into pieces of time in which the force is a line plus waves.
 
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use fmm_model::Scalar;
@@ -118,7 +119,7 @@ pub(crate) struct Forcing<'a, D> {
     normal_load: D,
     sampled_load: Option<&'a SampledLoad<D>>,
     /// Times at which the force or the normal load changes its formula, ascending; the first is 0.
-    knots: Vec<f64>,
+    knots: Cow<'static, [f64]>,
 }
 
 impl<'a, D: Scalar> Forcing<'a, D> {
@@ -132,6 +133,14 @@ impl<'a, D: Scalar> Forcing<'a, D> {
         mass: D,
         (normal_load, sampled_load): (D, Option<&'a SampledLoad<D>>),
     ) -> Self {
+        // A force and a load without a knot, such as those of one step of a stepper, take no memory.
+        let is_line = |excitation: &Excitation<D>| {
+            let is_ramp = matches!(excitation.source, Source::Ramp { .. }) && excitation.delay.value() == 0.0;
+            is_ramp || matches!(excitation.source, Source::Harmonic { .. } | Source::Base { .. } | Source::Belt { .. })
+        };
+        if sampled_load.is_none() && excitations.iter().all(is_line) {
+            return Self { excitations, mass, normal_load, sampled_load, knots: Cow::Borrowed(&[0.0]) };
+        }
         let mut knots = vec![0.0];
         if let Some(SampledLoad { interval, values }) = sampled_load {
             knots.extend((0..values.len()).map(|index| index as f64 * interval));
@@ -157,7 +166,7 @@ impl<'a, D: Scalar> Forcing<'a, D> {
         }
         knots.sort_by(f64::total_cmp);
         knots.dedup();
-        Self { excitations, mass, normal_load, sampled_load, knots }
+        Self { excitations, mass, normal_load, sampled_load, knots: Cow::Owned(knots) }
     }
 
     /// True if the counterface moves, or may move in a derivative.

@@ -29,8 +29,8 @@ pub(super) struct BySpeed<D> {
     end: [D; 2],
     nested: [[D; 7]; 2],
     rates: [Rates<D>; 2],
-    /// Directions in which these derivatives are better than those of the step.
-    better: Vec<bool>,
+    /// 1 in each direction in which these derivatives are better than those of the step, else 0.
+    better: D,
     /// Greatest magnitudes of velocity (m/s) and acceleration (m/s²).
     greatest: [f64; 2],
 }
@@ -72,7 +72,7 @@ impl<D: Scalar> BySpeed<D> {
         step(&start, growth, &mut rates, &mut now, &mut end, rate);
         dense_stages(&start, growth, &mut rates, &mut now, rate);
         let nested = [0, 1].map(|unknown| nested(&rates[unknown], mean_rate(&rates[unknown]) * growth, growth));
-        Some(Self { begin, growth, sign, start, end, nested, rates, better: Vec::new(), greatest })
+        Some(Self { begin, growth, sign, start, end, nested, rates, better: D::from(0.0), greatest })
     }
 
     /// The local error of a derivative in `direction`, as one of the velocity (m/s) of a machine that vibrates with
@@ -117,11 +117,14 @@ impl<D: Scalar> BySpeed<D> {
 
     /// One number with the derivatives of another in the directions in which these are better.
     fn graft(&self, derivatives: D, number: D) -> D {
-        self.better.iter().enumerate().fold(D::from(number.value()), |sum, (direction, better)| {
-            let from = if *better { derivatives } else { number };
-            sum + D::variable(0.0, direction) * from.partial(direction)
-        })
+        let from = |direction| if self.better.partial(direction) == 1.0 { derivatives } else { number };
+        by_direction::<D>(|direction| from(direction).partial(direction)) + number.value()
     }
+}
+
+/// A number of value zero with these derivatives: room for one plain number a direction that takes no memory.
+fn by_direction<D: Scalar>(of: impl Fn(usize) -> f64) -> D {
+    (0..D::DIRECTIONS).fold(D::from(0.0), |sum, direction| sum + D::variable(0.0, direction) * of(direction))
 }
 
 /// Estimated error of a derivative above which it is computed again, in units of the tolerance. The estimate is that of
@@ -138,22 +141,22 @@ const NEGLIGIBLE: f64 = 1e-3;
 ///
 /// The steps are chosen by values alone, so that derivatives do not change the values. A steep law parts neighbouring
 /// motions within a fraction of such a step: its derivatives are then found with the speed as the independent variable.
-pub(super) struct Refiner {
+pub(super) struct Refiner<D> {
     allowed: f64,
     /// ω₀ (rad/s), which makes a velocity of a position.
     angular: f64,
     /// The greatest derivative so far in each direction, as one of the velocity.
-    greatest: Vec<f64>,
+    greatest: D,
 }
 
-impl Refiner {
-    pub(super) fn new(directions: usize, tolerance: f64, angular: f64) -> Self {
-        Self { allowed: (SUSPICIOUS * tolerance).min(MOST), angular, greatest: vec![0.0; directions] }
+impl<D: Scalar> Refiner<D> {
+    pub(super) fn new(tolerance: f64, angular: f64) -> Self {
+        Self { allowed: (SUSPICIOUS * tolerance).min(MOST), angular, greatest: D::from(0.0) }
     }
 
     /// Puts the derivatives at the end of `step`, which begins at `at`, right, and gives those within; `None` if the
     /// step has good ones, or if its speed is no measure of time.
-    pub(super) fn refine<D: Scalar, L: SlidingLaw<D> + ?Sized>(
+    pub(super) fn refine<L: SlidingLaw<D> + ?Sized>(
         &mut self,
         field: &Field<D, L>,
         phase: &Phase<D>,
@@ -164,27 +167,28 @@ impl Refiner {
             return None;
         }
         let errors = step.derivative_errors();
-        let mut sizes = vec![0.0; D::DIRECTIONS];
-        for (direction, size) in sizes.iter_mut().enumerate() {
-            let now = self.size(at.state, step, direction);
+        let now = |direction| self.size(at.state, step, direction);
+        let greatest = by_direction::<D>(|direction| {
             // A size that is not finite does not count.
-            let greatest = &mut self.greatest[direction];
-            *greatest = greatest.max(if now.is_finite() { now } else { 0.0 });
-            *size = now.max(NEGLIGIBLE * *greatest);
-        }
+            let now = Some(now(direction)).filter(|size| size.is_finite()).unwrap_or(0.0);
+            self.greatest.partial(direction).max(now)
+        });
         let error = |direction: usize| errors.of(direction, self.angular);
-        let good = |direction: usize| error(direction) <= self.allowed * sizes[direction];
-        if (0..D::DIRECTIONS).all(good) {
+        let good = |direction: usize| {
+            error(direction) <= self.allowed * now(direction).max(NEGLIGIBLE * greatest.partial(direction))
+        };
+        let are_good = (0..D::DIRECTIONS).all(good);
+        self.greatest = greatest;
+        if are_good {
             return None;
         }
         let mut motion = BySpeed::follow(field, phase, at, step)?;
         // One form may be better in one direction and worse in another.
         let better = |direction| !(error(direction) <= motion.error(direction, self.angular));
-        let better: Vec<_> = (0..D::DIRECTIONS).map(better).collect();
-        if !better.contains(&true) {
+        motion.better = by_direction(|direction| f64::from(better(direction)));
+        if (0..D::DIRECTIONS).all(|direction| motion.better.partial(direction) == 0.0) {
             return None;
         }
-        motion.better = better;
         let end = motion.derive(field, phase, step.end, step.last_acceleration().value());
         let acceleration = field.acceleration(phase, at.side, at.time + step.length, end);
         step.correct(end, acceleration - acceleration.value() + step.last_acceleration().value());
@@ -192,7 +196,7 @@ impl Refiner {
     }
 
     /// The size of a derivative over a step from `begin`, as one of the velocity.
-    fn size<D: Scalar>(&self, begin: State<D>, step: &Step<D>, direction: usize) -> f64 {
+    fn size(&self, begin: State<D>, step: &Step<D>, direction: usize) -> f64 {
         let of = |state: State<D>| {
             state.velocity.partial(direction).abs() + self.angular * state.position.partial(direction).abs()
         };

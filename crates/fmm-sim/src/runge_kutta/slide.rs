@@ -38,7 +38,7 @@ pub(super) struct Integrator<'a, D, L: ?Sized> {
     /// Length of the step to try next (s).
     length: f64,
     budget: usize,
-    refiner: Refiner,
+    refiner: Refiner<D>,
 }
 
 /// Scale of a motion without a spring. An acceleration tells how fast it becomes for as long as a step alone.
@@ -67,7 +67,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
             run: (natural * end < 1.0 && end > 0.0).then_some(Run { duration: end, fastest: 0.0 }),
             length: 0.1 / angular,
             budget: STEP_BUDGET,
-            refiner: Refiner::new(D::DIRECTIONS, tolerance, angular),
+            refiner: Refiner::new(tolerance, angular),
         }
     }
 
