@@ -8,11 +8,13 @@ mod fits;
 mod frequency_response;
 mod least;
 mod simulation;
+mod steps;
 mod uncertainty;
 
 fn main() {
-    let tables: [(&str, fn()); 4] = [
+    let tables: [(&str, fn()); 5] = [
         ("simulation", simulation::print_rows),
+        ("steps", steps::print_rows),
         ("fits", fits::print_rows),
         ("uncertainty", uncertainty::print_rows),
         ("frequency_response", frequency_response::print_rows),

@@ -31,7 +31,7 @@ const ROOMS: &[(&str, &str)] = &[
     ("fmm-record", "error numerics sampling units record calculus examination spacing files"),
     (
         "fmm-sim",
-        "error scenario mechanics trajectory automaton dormand_prince exact fixed_step runge_kutta bristle simulate",
+        "error scenario mechanics trajectory automaton dormand_prince exact fixed_step runge_kutta bristle simulate stepper",
     ),
     (
         "fmm-uq",

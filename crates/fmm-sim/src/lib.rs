@@ -36,7 +36,7 @@
 //! accuracy that their pages state. [`simulate`] takes the engine that suits the law; [`Trajectory::engine`] names it.
 //! External actions are [`Excitation`]s, which add up; a release or a push is an initial state. The [`Work`] done by
 //! friction, damping and excitation comes along on request. A contact along a prescribed motion needs no engine:
-//! [`friction_along`].
+//! [`friction_along`]. A loop that has the force of a controller, or of a larger model, moves a machine by a [`Stepper`].
 //!
 //! # Scenarios of common machines
 //!
@@ -121,6 +121,7 @@ mod mechanics;
 mod runge_kutta;
 mod scenario;
 mod simulate;
+mod stepper;
 #[cfg(test)]
 mod tests;
 mod trajectory;
@@ -132,6 +133,7 @@ pub use fixed_step::{Moreau, Thesis};
 pub use runge_kutta::RungeKutta;
 pub use scenario::{Channels, Direction, Event, EventKind, Excitation, Mode, Sampling, Scenario, State};
 pub use simulate::{simulate, simulate_into};
+pub use stepper::{Force, Stepped, Stepper};
 pub use trajectory::{Energy, Engine, Samples, Trajectory, Work};
 
 /// The README's example, run as a test.

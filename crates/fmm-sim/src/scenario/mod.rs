@@ -167,6 +167,13 @@ impl<D: Scalar, L> Scenario<D, L> {
 }
 
 impl<D: Scalar, L: ?Sized> Scenario<D, L> {
+    /// Begins anew in the state `initial`, under no other excitation than `force` (N), which grows by `rate` (N/s).
+    pub(crate) fn begin(&mut self, initial: State<D>, force: D, rate: D) {
+        self.initial = initial;
+        self.excitations.clear();
+        self.excitations.push(Excitation { source: Source::Ramp { force, rate }, delay: D::from(0.0) });
+    }
+
     /// The normal load at its samples, if it varies.
     pub(crate) fn sampled_load(&self) -> Option<&SampledLoad<D>> {
         self.sampled_load.as_ref()

@@ -74,6 +74,11 @@ impl Sampling {
         Ok(Self { grid: Grid::Uniform { interval }, first: 0, count, channels: Channels::Both, work: false })
     }
 
+    /// Position and velocity at one `time` (s), which must be positive and finite.
+    pub(crate) const fn one(time: f64) -> Self {
+        Self { grid: Grid::Uniform { interval: time }, first: 1, count: 1, channels: Channels::Both, work: false }
+    }
+
     /// Samples at the given `times` (s), which must ascend from 0 on; position and velocity.
     ///
     /// # Errors

@@ -11,4 +11,5 @@ mod memory;
 mod prescribed;
 mod rest;
 mod springs;
+mod steps;
 mod weak_springs;
