@@ -30,12 +30,14 @@ pub struct Damping<D = f64> {
     quadratic: D,
     cubic: D,
     power: Option<(D, D)>,
+    wind: D,
 }
 
 impl<D: Scalar> Damping<D> {
     /// No damping at all.
     pub fn none() -> Self {
-        Self { linear: D::from(0.0), quadratic: D::from(0.0), cubic: D::from(0.0), power: None }
+        let zero = D::from(0.0);
+        Self { linear: zero, quadratic: zero, cubic: zero, power: None, wind: zero }
     }
 
     /// Viscous damping `c₁` (N s/m).
@@ -117,6 +119,34 @@ impl<D: Scalar> Damping<D> {
         Ok(self)
     }
 
+    /// The same damping with its quadratic part in a medium that moves at `velocity` w (m/s), such as the drag of a
+    /// vehicle in wind, less the force on the machine at rest:
+    ///
+    /// ```text
+    /// c₂ (|v − w| (v − w) + |w| w) in the place of c₂ |v| v
+    /// ```
+    ///
+    /// What is left out is constant: a force that does not depend on the motion is no damping.
+    ///
+    /// ```
+    /// use fmm_model::Damping;
+    ///
+    /// let drag = Damping::new(0.0, 0.4)?.with_wind(3.0)?;
+    /// // At 20 m/s against a medium that moves at 3 m/s, and back.
+    /// assert!((drag.force(20.0) - 0.4 * (17.0 * 17.0 + 9.0)).abs() < 1e-12);
+    /// assert!((drag.force(-20.0) - 0.4 * (9.0 - 23.0 * 23.0)).abs() < 1e-12);
+    /// assert_eq!(drag.force(0.0), 0.0);
+    /// # Ok::<(), fmm_model::ModelError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`] if the velocity is not finite.
+    pub fn with_wind(mut self, velocity: D) -> Result<Self, ModelError> {
+        ModelError::require_finite("velocity of the medium", velocity.value(), "m/s")?;
+        self.wind = velocity;
+        Ok(self)
+    }
+
     /// c₁, the viscous coefficient (N s/m).
     pub fn linear_coefficient(&self) -> D {
         self.linear
@@ -142,10 +172,14 @@ impl<D: Scalar> Damping<D> {
         vanishes(self.quadratic) && vanishes(self.cubic) && self.power.is_none()
     }
 
-    /// F(v), the damping force (N) at `velocity` (m/s); it has the sign of the velocity.
+    /// F(v), the damping force (N) at `velocity` (m/s); in a medium at rest it has the sign of the velocity.
     pub fn force(&self, velocity: D) -> D {
         let speed = velocity.abs();
-        let force = velocity * (self.linear + speed * (self.quadratic + speed * self.cubic));
+        let mut force = velocity * (self.linear + speed * (self.quadratic + speed * self.cubic));
+        if !vanishes(self.wind) {
+            let through = velocity - self.wind;
+            force += self.quadratic * (through.abs() * through + self.wind.abs() * self.wind - speed * velocity);
+        }
         match self.power {
             Some((coefficient, exponent)) if speed.value() > 0.0 => {
                 force + coefficient * speed.powf(exponent) * velocity.value().signum()

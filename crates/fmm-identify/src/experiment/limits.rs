@@ -17,10 +17,10 @@ impl Warning {
     pub(crate) fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.
-        if last >= first && summary.half_swings > 2 && !summary.is_driven {
+        if last >= first && summary.half_swings > 2 && summary.is_ring_down() {
             warnings.push(Self::NoDecay);
         }
-        if summary.half_swings < ENOUGH_HALF_SWINGS && !summary.is_driven {
+        if summary.half_swings < ENOUGH_HALF_SWINGS && summary.is_ring_down() {
             warnings.push(Self::FewHalfSwings { count: summary.half_swings });
         }
         // A pendulum that is taken for one, or a spring that is fitted, has such a period.

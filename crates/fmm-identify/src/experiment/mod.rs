@@ -17,6 +17,7 @@ mod parts;
 mod planned;
 mod preparation;
 mod ring_down;
+pub(crate) mod run_down;
 mod sampled_pulse;
 mod sensor;
 pub(crate) mod sight;
@@ -42,6 +43,7 @@ use crate::experiment::first_guess::{Dissipation, FirstGuess};
 use crate::experiment::force::ForceRecord;
 use crate::experiment::lines::Lines;
 use crate::experiment::nuisance::Nuisance;
+use crate::experiment::run_down::RunDownGuess;
 use crate::machine::Machine;
 use crate::warning::Warning;
 
@@ -96,7 +98,8 @@ where
 }
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)),
-/// or a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)).
+/// a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)), or a
+/// run-down of a machine without a spring ([`run_down`](Self::run_down)).
 ///
 /// Experiments of all kinds are fitted together: they share the machine and the law, and each has its own initial state
 /// and offset, its own normal load ([`with_load_factor`](Self::with_load_factor)) and its own sensor
@@ -116,6 +119,8 @@ pub struct Experiment {
     /// Normal load over that of the machine.
     load_factor: f64,
     driven: Option<Driven>,
+    /// Start values of a run-down; `None` for a machine with a spring.
+    run_down: Option<RunDownGuess>,
     /// The impact that it begins with.
     pub(crate) impact: Option<ImpactSummary>,
     /// The lines of its spectrum that are compared in place of its samples.
@@ -148,6 +153,7 @@ impl Experiment {
             sensor: Sensor::default(),
             load_factor: 1.0,
             driven: None,
+            run_down: None,
             impact: None,
             lines: None,
         }
@@ -265,10 +271,20 @@ impl Experiment {
         self.driven.as_ref().map(|driven| &driven.guess)
     }
 
+    /// Losses to begin a fit with.
+    pub(crate) fn hypotheses(&self) -> Vec<Dissipation> {
+        match (&self.driven, &self.run_down) {
+            (Some(driven), _) => driven.guess.hypotheses(),
+            (None, Some(run_down)) => run_down.hypotheses.clone(),
+            (None, None) => self.guess.hypotheses(),
+        }
+    }
+
     /// Offset to begin a fit with, given what the contact loses.
     pub(crate) fn first_offset(&self, dissipation: Dissipation) -> f64 {
         match (&self.driven, self.record.quantity()) {
             (Some(driven), _) => driven.guess.offset,
+            _ if self.is_run_down() => 0.0,
             (None, Quantity::Acceleration) => self.record.mean(),
             (None, _) => self.guess.offset(dissipation),
         }
@@ -279,7 +295,11 @@ impl Experiment {
         if self.begins_at_rest() {
             return (0.0, 0.0);
         }
-        self.driven.as_ref().map_or_else(|| self.guess.initial_state(dissipation), |driven| driven.guess.initial)
+        match (&self.driven, &self.run_down) {
+            (Some(driven), _) => driven.guess.initial,
+            (None, Some(run_down)) => run_down.initial,
+            (None, None) => self.guess.initial_state(dissipation),
+        }
     }
 
     /// Corner frequency of the sensor (Hz), or where a fit of it begins; `None` without a filter.
@@ -386,6 +406,9 @@ impl Experiment {
 
     /// Largest displacement and velocity of the motion, in the units of the record and its integral or derivative.
     pub(crate) fn scales(&self) -> (f64, f64) {
+        if let Some(run_down) = &self.run_down {
+            return (run_down.path, run_down.speed);
+        }
         let (largest, angular) = (self.summary.amplitudes.0, 2.0 * PI * self.guess.frequency());
         match self.record.quantity() {
             Quantity::Displacement => (largest, angular * largest),

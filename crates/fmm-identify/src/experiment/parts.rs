@@ -56,7 +56,7 @@ impl Experiment {
     }
 
     /// The part up to `end` (s); `None` if that leaves nothing out or too little.
-    fn up_to(&self, end: f64) -> Option<Self> {
+    pub(super) fn up_to(&self, end: f64) -> Option<Self> {
         // The lines of a spectrum are those of the whole record.
         if self.lines.is_some() {
             return None;

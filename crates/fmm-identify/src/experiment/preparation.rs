@@ -139,6 +139,8 @@ pub struct RecordSummary {
     pub second_mode: Option<SecondMode>,
     /// True if the motion is driven; what is seen in a free vibration is then none.
     pub is_driven: bool,
+    /// True if the motion has no spring: the machine runs down from the first to the last amplitude.
+    pub is_run_down: bool,
 }
 
 /// A step of the converter that exceeds the noise by this factor rounds it away.
@@ -174,7 +176,13 @@ impl RecordSummary {
             upsampling: None,
             second_mode: None,
             is_driven: false,
+            is_run_down: false,
         }
+    }
+
+    /// True if the machine vibrates freely, so that peaks are looked for.
+    pub(crate) fn is_ring_down(&self) -> bool {
+        !self.is_driven && !self.is_run_down
     }
 
     /// True if the steps of the converter exceed the noise, so that rounding is no noise of its own at every sample.
@@ -196,7 +204,11 @@ impl fmt::Display for RecordSummary {
             Some(value) => write!(f, "; offset held at {value:.6} {unit}")?,
         }
         let (first, last) = (Rounded::significant(self.amplitudes.0, 4), Rounded::significant(self.amplitudes.1, 4));
-        write!(f, "; {half_swings} peaks above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}")?;
+        match (self.is_run_down, quantity) {
+            (true, Quantity::Velocity) => write!(f, "; runs down from {first} to {last} {unit}")?,
+            (true, _) => write!(f, "; runs down over {first} {unit}")?,
+            _ => write!(f, "; {half_swings} peaks above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}")?,
+        }
         write!(f, "; noise {} {unit}", Rounded::significant(*noise, 2))?;
         if let Some(step) = self.resolution {
             write!(f, ", resolution {} {unit}", Rounded::significant(step, 3))?;

@@ -148,6 +148,7 @@ impl Experiment {
             upsampling,
             second_mode: seen.second_mode(),
             is_driven: false,
+            is_run_down: false,
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         let nuisances = Nuisance::of_hum(&summary.hum).collect();

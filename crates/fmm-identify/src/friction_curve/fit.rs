@@ -18,6 +18,7 @@ use crate::friction_curve::mixture::{Posterior, Prior};
 use crate::friction_curve::rules::{MOST_SAMPLES, MOST_STEPS, SAMPLES_PER_PERIOD, SETTLED};
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
+use crate::quantities::table::Place;
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::rules::{CORRELATION_TIME, EXCESS};
 use crate::threads::is_past;
@@ -30,7 +31,7 @@ pub(super) struct CurveFit {
     pub(super) posterior: Posterior,
     /// ν of the noise (1).
     pub(super) freedom: f64,
-    /// f₀ (Hz).
+    /// f₀ (Hz); 0 without a spring.
     pub(super) frequency: f64,
     /// Weights of the levels in the mean over the path.
     pub(super) path: [f64; LEVELS],
@@ -117,7 +118,7 @@ impl CurveFit {
             scale,
             posterior,
             freedom: likelihood.freedom,
-            frequency: values[0],
+            frequency: problem.table.shared(Place::Frequency).map_or(0.0, |index| values[index]),
             path: path.weights(top),
             slowest: path.slowest,
             excess: near.excess(problem),

@@ -121,7 +121,7 @@ impl FrictionCurve {
     fn with_terms(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
         let reference = experiments.first().ok_or(IdentifyError::no_record())?;
         if experiments.iter().any(|experiment| experiment.drive().is_some() || experiment.lines().is_some()) {
-            let what = "friction over speed without a law is found from ring-downs, not from driven motions";
+            let what = "friction over speed without a law is found from ring-downs and run-downs, not from driven motions";
             return Err(IdentifyError::wrong_record(what.to_owned()));
         }
         if experiments.iter().any(|experiment| experiment.load_factor() != reference.load_factor()) {
@@ -134,7 +134,10 @@ impl FrictionCurve {
             return Err(IdentifyError::contradiction(what));
         }
         let terms = if machine.steadiness().is_some() { terms.with_change() } else { terms };
-        let fit = CurveFit::of(machine, &terms, experiments)?;
+        // The levels near rest decide about the rest by leaps, and nothing is lost before it.
+        let moving = |one: &Experiment| one.before_rest().unwrap_or_else(|| one.clone());
+        let moving: Vec<Experiment> = experiments.iter().map(moving).collect();
+        let fit = CurveFit::of(machine, &terms, &moving)?;
         let units = Units::of(reference.record());
         let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
         let clock = Clock::of(experiments);
@@ -146,7 +149,7 @@ impl FrictionCurve {
         let (meaning, factor, relative) = scale(machine, &units, fit.frequency);
         let unit = match meaning {
             Meaning::Coefficient => Unit::default().to_string(),
-            Meaning::Force => "N".to_owned(),
+            Meaning::Force => units.with_forces().map_or_else(|| "N".to_owned(), |units| units.force.to_string()),
             Meaning::PerMass => units.acceleration().to_string(),
         };
         let mut limits = Vec::new();
@@ -312,8 +315,8 @@ fn scale(machine: &Machine, units: &Units, frequency: f64) -> (Meaning, f64, f64
         Scale::MassAndStiffness(..) => Some((1.0, 0.0)),
         _ => None,
     };
-    let Some((force, relative)) = mass.filter(|_| units.is_metric()) else { return (Meaning::PerMass, 1.0, 0.0) };
-    match machine.normal_load() {
+    let Some((force, relative)) = mass.filter(|_| units.with_forces().is_some()) else { return (Meaning::PerMass, 1.0, 0.0) };
+    match machine.normal_load().filter(|_| units.is_metric()) {
         Some(load) => {
             let by_load = load.uncertainty() / load.value();
             (Meaning::Coefficient, force / load.value(), relative.hypot(by_load))

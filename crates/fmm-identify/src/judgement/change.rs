@@ -4,7 +4,7 @@
 use fmm_friction::{AccelerationCoulomb, Coulomb, CoulombViscous, LawFamily};
 
 use crate::candidate::Candidate;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
 use crate::judgement::asked::Asked;
 use crate::machine::Terms;
@@ -13,6 +13,10 @@ use crate::machine::term::Term;
 /// Size of the next `term` of a change that the residuals of `found` ask for; `None` for a law that takes none, and
 /// where the records do not tell.
 pub(super) fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Option<Asked> {
+    // In a run-down the speed falls with the time, and friction over both is one.
+    if reference(experiments).is_run_down() {
+        return None;
+    }
     let is_next = |extended: &Candidate| extended.terms.has(term) && !found.fitted.model.terms.has(term);
     let extended = with_change(&Candidate::fitted(found)).filter(is_next)?;
     Asked::of(found, experiments, &extended, term)

@@ -95,7 +95,8 @@ pub(crate) fn score_tests(
 ) -> Result<(Vec<ScoreTest>, Vec<Warning>), IdentifyError> {
     let machine = *base.machine();
     let problem = base.problem(decays)?;
-    if problem.table.oscillator != 1 || !is_simple(base) {
+    let is_run_down = reference(decays).is_run_down();
+    if problem.table.oscillator != 1 && !is_run_down || !is_simple(base) {
         return Ok((Vec::new(), Vec::new()));
     }
     let value = |name: &str| base.fit().estimate(name).map_or(0.0, Estimate::value);
@@ -129,12 +130,12 @@ pub(crate) fn score_tests(
     changes.push((Extension::QuadraticDamping, residuals(&quadratic, of_base)));
     // A contact with internal state takes no load that changes.
     let terms = &base.fitted.model.terms;
-    if friction > 0.0 && !terms.has(Term::Change) && !terms.has(Term::Position) {
+    if friction > 0.0 && !is_run_down && !terms.has(Term::Change) && !terms.has(Term::Position) {
         let dahl = Problem::of(&Candidate::of::<Dahl>().with(linear), machine, decays)?;
         let of_law = [friction, friction / (STEP * length), 1.0];
         changes.push((Extension::Presliding, residuals(&dahl, &of_law)));
     }
-    if machine.restoring() == Restoring::Linear && !base.fitted.model.terms.has_spring() {
+    if machine.restoring() == Restoring::Linear && !is_run_down && !base.fitted.model.terms.has_spring() {
         let softened = |length: f64| -> Result<_, ModelError> { Ok(machine.with_restoring(Restoring::sine(length)?)) };
         // The sine of x/L loses x²/6L² of the stiffness.
         let softened = softened(length / (6.0 * STEP).sqrt())?;

@@ -76,6 +76,18 @@ impl Units {
         self.velocity().per(&Unit::of("s"))
     }
 
+    /// The same with the forces that a mass makes of forces per mass: N along a motion in m, by a mass in kg, and N m
+    /// about an axis with angles in rad, by a moment of inertia in kg m²; `None` for other positions.
+    pub(crate) fn with_forces(&self) -> Option<Self> {
+        let is_angle = self.position == Unit::of("rad");
+        (is_angle || self.is_metric()).then(|| Self { force: Unit::of(if is_angle { "N m" } else { "N" }), ..self.clone() })
+    }
+
+    /// Unit of a mass, by these forces.
+    pub(crate) fn mass(&self) -> Unit {
+        if self.position == Unit::of("rad") { Unit::of("kg m²") } else { Unit::of("kg") }
+    }
+
     /// True if positions are in m.
     pub(crate) fn is_metric(&self) -> bool {
         self.position == Unit::of("m")

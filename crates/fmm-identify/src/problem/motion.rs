@@ -2,6 +2,7 @@
 
 use fmm_fit::EvaluationError;
 use fmm_model::{Damping, Oscillator, Scalar};
+use fmm_sim::Excitation;
 
 use crate::experiment::Experiment;
 use crate::law::Motion;
@@ -36,7 +37,10 @@ impl Table {
         let fitted = |place| self.shared(place).map(|index| values[index]);
         let mass = self.mass(machine, values);
         let oscillator = match self.form {
-            Form::PerMass => Oscillator::per_unit_mass(values[0])?,
+            Form::PerMass => match fitted(Place::Frequency) {
+                Some(frequency) => Oscillator::per_unit_mass(frequency)?,
+                None => Oscillator::new(D::from(1.0), D::from(0.0))?,
+            },
             _ => Oscillator::new(values[0], values[1])?,
         };
         let known = machine.damping().map(|damping| D::from(damping.value()));
@@ -53,9 +57,12 @@ impl Table {
         if let Some(exponent) = beside(Term::PowerExponent) {
             damping = damping.with_power(per_mass(Term::PowerDamping), exponent)?;
         }
+        if let Some(wind) = fitted(Place::Wind) {
+            damping = damping.with_wind(wind)?;
+        }
         let own = |place| self.own(record, place).map(|index| values[index - self.own[record] + self.shared]);
         let force = match experiment.drive() {
-            None => None,
+            None => fitted(Place::Slope).map(Excitation::constant).transpose()?,
             Some(drive) => {
                 let one = D::from(1.0);
                 let mut per = match (drive.is_force(), self.is_per_mass()) {

@@ -11,6 +11,7 @@ use crate::candidate::Candidate;
 use crate::experiment::Experiment;
 use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
+use crate::experiment::run_down::slope;
 use crate::law::Law;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::term::Term;
@@ -46,12 +47,9 @@ impl Problem<'_> {
     /// Start values, one set per hypothesis that the law can express, each inside the bounds.
     pub(crate) fn starts(&self) -> Vec<Vec<f64>> {
         let has_level = self.law().fitted().any(|parameter| is_force(parameter.role()));
-        let has_slope = self.has_linear_damping();
+        let has_slope = self.has_linear_damping() || self.drags();
         let reference = reference(&self.experiments);
-        let hypotheses = match reference.driven_guess() {
-            Some(guess) => guess.hypotheses(),
-            None => reference.guess.hypotheses(),
-        };
+        let hypotheses = reference.hypotheses();
         let expressible = |dissipation: &&Dissipation| {
             (has_level || dissipation.friction == 0.0) && (has_slope || dissipation.damping == 0.0)
         };
@@ -96,6 +94,12 @@ impl Problem<'_> {
         self.terms().has_linear_damping() || self.law().has_slope()
     }
 
+    /// True for run-downs whose only damping is that with the square of the speed.
+    fn drags(&self) -> bool {
+        let is_drag = self.terms().has(Term::QuadraticDamping) && !self.has_linear_damping();
+        is_drag && reference(&self.experiments).is_run_down()
+    }
+
     /// Start values under one hypothesis.
     fn start(&self, dissipation: Dissipation) -> Vec<f64> {
         let reference = reference(&self.experiments);
@@ -115,6 +119,7 @@ impl Problem<'_> {
             Place::Frequency => frequency,
             Place::Mass => mass,
             Place::Stiffness => mass / mass_of_stiffness(1.0, frequency),
+            Place::Slope => slope(&self.experiments),
             _ => 0.0,
         };
         let mut start: Vec<f64> =
@@ -261,6 +266,8 @@ impl Problem<'_> {
         let Dissipation { friction, damping } = dissipation;
         start.extend(self.terms().iter().map(|term| match term {
             Term::LinearDamping => damping,
+            // A run-down shows a drag as damping.
+            Term::QuadraticDamping if self.drags() => damping / speed,
             Term::QuadraticDamping | Term::PowerDamping => 0.1 * (damping + friction / speed) / speed,
             Term::CubicDamping => 0.1 * (damping + friction / speed) / (speed * speed),
             Term::PowerExponent => 2.0,

@@ -58,32 +58,47 @@ impl Inputs<'_> {
         values.into_iter().zip(gradients).map(with_gradient).collect()
     }
 
+    /// Units of the forces that are stated; of a record in other units, damping alone is one.
+    fn forces(&self) -> Units {
+        let own = if self.table.is_per_mass() { self.table.units.with_forces() } else { None };
+        own.unwrap_or_else(|| Units::new("m", "N"))
+    }
+
     /// True if forces per mass are accelerations in SI, so that a mass makes forces of them.
     fn is_si(&self) -> bool {
+        !self.table.is_per_mass() || self.table.units.with_forces().is_some()
+    }
+
+    /// True if forces are in N along a motion in m, which a normal load in N makes coefficients of.
+    fn is_along_a_line(&self) -> bool {
         !self.table.is_per_mass() || self.table.units.is_metric()
     }
 
     /// The derived quantities, as numbers whose directions from `first` on are the shared values, then the inputs.
     fn derived<D: Scalar>(&self, first: usize) -> Vec<(Parameter, D)> {
         let variable = |value: f64, direction: usize| D::variable(value, direction.wrapping_sub(first));
-        let natural_frequency = variable(self.shared[0], 0);
+        let natural_frequency = self.table.shared(Place::Frequency).map(|index| variable(self.shared[index], index));
         let mut derived = Vec::new();
         // A scale on which the motion depends is fitted with what is known of it.
         let scale = |place, known: f64| match self.table.shared(place) {
             Some(index) => variable(self.shared[index], index),
             None => variable(known, self.shared.len()),
         };
+        let stated = self.forces();
+        let to_mass = |stiffness: D| natural_frequency.map(|frequency| mass_of_stiffness(stiffness, frequency));
         let mass = match self.machine.scale() {
             Scale::Mass(known) => {
                 let mass = scale(Place::Mass, known.value());
-                let stiffness = mass / mass_of_stiffness(D::from(1.0), natural_frequency);
-                derived.push((Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE), stiffness));
+                let unit = stated.force.per(&stated.position).to_string();
+                let parameter = Parameter::named("stiffness", "k", unit).bounded(Bounds::POSITIVE);
+                derived.extend(to_mass(D::from(1.0)).map(|per_stiffness| (parameter, mass / per_stiffness)));
                 Some(mass)
             }
             Scale::Stiffness(known) => {
-                let mass = mass_of_stiffness(scale(Place::Stiffness, known.value()), natural_frequency);
-                derived.push((Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE), mass));
-                Some(mass)
+                let mass = to_mass(scale(Place::Stiffness, known.value()));
+                let parameter = Parameter::named("mass", "m", stated.mass().to_string()).bounded(Bounds::POSITIVE);
+                derived.extend(mass.map(|mass| (parameter, mass)));
+                mass
             }
             _ => None,
         };
@@ -92,14 +107,19 @@ impl Inputs<'_> {
                 let Some(parameter) = term.stiffness_per_mass(&self.table.units.position) else { continue };
                 let index = self.table.oscillator + place;
                 let value = variable(self.shared[index], index);
-                derived.push((parameter, value / mass_of_stiffness(D::from(1.0), natural_frequency)));
+                derived.extend(to_mass(D::from(1.0)).map(|per_stiffness| (parameter, value / per_stiffness)));
+            }
+            if let Some(frequency) = natural_frequency {
+                derived.extend(self.of_damping(frequency, mass, &variable).into_iter().flatten());
             }
         }
-        if self.table.is_per_mass() {
-            derived.extend(self.of_damping(natural_frequency, mass, &variable).into_iter().flatten());
+        if let Some((slope, mass)) = self.table.shared(Place::Slope).zip(mass) {
+            let parameter = Parameter::named("slope_force", "F_s", stated.force.to_string());
+            derived.push((parameter, variable(self.shared[slope], slope) * mass));
         }
-        if let Some(index) = self.table.shared(Place::Term(Term::Change)).filter(|_| self.table.is_per_mass()) {
-            let per_half_cycle = variable(self.shared[index], index) / (natural_frequency * 2.0);
+        let change = self.table.shared(Place::Term(Term::Change)).filter(|_| self.table.is_per_mass());
+        if let Some((index, frequency)) = change.zip(natural_frequency) {
+            let per_half_cycle = variable(self.shared[index], index) / (frequency * 2.0);
             derived.push((Parameter::new(CHANGE_PER_HALF_CYCLE, "w/2f₀", "1"), per_half_cycle));
         }
         if let Some(index) = self.table.shared(Place::Term(Term::Position)) {
@@ -115,8 +135,6 @@ impl Inputs<'_> {
         let Table { family, units, law, .. } = self.table;
         let law_value = |index: usize| variable(self.shared[law + index], law + index);
         let level = family.level().map(law_value);
-        // Forces that a mass makes of forces per mass.
-        let metric = Units::new("m", "N");
         for (i, law_parameter) in family.fitted().enumerate() {
             let role = law_parameter.role();
             let mut value = law_value(i);
@@ -126,12 +144,12 @@ impl Inputs<'_> {
                 derived.push((stated, if self.table.is_per_mass() { value / gain } else { value * by_force }));
             }
             let Some(force) = to_force.map(|to_force| value * to_force) else { continue };
-            let stated = |form: Form| metric.stated(law_parameter, form);
+            let stated = |form: Form| stated.stated(law_parameter, form);
             if is_coefficient(law_parameter) {
                 if self.is_si() {
                     let force = force / gain;
                     derived.extend(mass.map(|_| (stated(Form::Force), force)));
-                    derived.extend(load.map(|load| (stated(Form::Mu), force / load)));
+                    derived.extend(load.filter(|_| self.is_along_a_line()).map(|load| (stated(Form::Mu), force / load)));
                 }
             } else if mass.is_some() && (role == Role::Slope || is_force(role) && self.is_si()) {
                 derived.push((stated(Form::Force), force));

@@ -6,10 +6,12 @@ use std::ops::Range;
 
 use fmm_friction::Role;
 use fmm_model::{Bounds, Parameter, Restoring, Rounded, Scalar};
+use fmm_record::Quantity;
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::deflections::Deflections;
+use crate::experiment::run_down::{are_run_downs, have_both_directions};
 use crate::experiment::{Experiment, reference};
 use crate::finding::Source;
 use crate::law::Law;
@@ -54,6 +56,10 @@ pub(crate) enum Place {
     MachineDamping,
     QuadraticDamping,
     NormalLoad,
+    /// Constant force per mass beside a run-down, such as that of a slope.
+    Slope,
+    /// Velocity of the medium behind quadratic damping.
+    Wind,
     Term(Term),
     /// A parameter of the law, by its number among the fitted ones.
     Law(usize),
@@ -141,6 +147,34 @@ fn require_swing(machine: &Machine, record: &Experiment) -> Result<(), IdentifyE
     )))
 }
 
+/// Refuses run-downs beside other experiments, and what a machine without a spring does not have.
+fn require_spring(machine: &Machine, terms: &Terms, experiments: &[Experiment]) -> Result<(), IdentifyError> {
+    let contradiction = match are_run_downs(experiments) {
+        None => "a run-down is that of a machine without a spring, and other experiments beside it have one; fit them apart",
+        Some(false) => return Ok(()),
+        Some(true) if !matches!(machine.scale(), Scale::PerUnitMass | Scale::Mass(_)) => {
+            "a run-down has no spring: give a mass (kg, or kg m² for angles) or nothing, and no stiffness"
+        }
+        Some(true) if terms.has_spring() || terms.has(Term::Position) || machine.restoring() != Restoring::Linear => {
+            "a run-down has no spring and no middle of its path; leave out the terms of the spring, friction over the \
+             position, and the pendulum"
+        }
+        Some(true) => return Ok(()),
+    };
+    Err(IdentifyError::contradiction(contradiction))
+}
+
+/// The rows of what tells the two directions of run-downs apart: a constant force, and wind where `terms` have a drag
+/// that feels it, which is no faster than the largest `speed`.
+fn between_directions(terms: &Terms, units: &Units, speed: f64, rows: &mut Builder) -> Result<(), IdentifyError> {
+    rows.free(Place::Slope, Parameter::named("slope_per_mass", "F_s/m", units.acceleration().to_string()));
+    if terms.has(Term::QuadraticDamping) {
+        let wind = Parameter::named("wind", "w", units.velocity().to_string()).bounded(Bounds::new(-speed, speed)?);
+        rows.free(Place::Wind, wind);
+    }
+    Ok(())
+}
+
 const MASS: Parameter = Parameter::new("mass", "m", "kg").bounded(Bounds::POSITIVE);
 const STIFFNESS: Parameter = Parameter::new("stiffness", "k", "N/m").bounded(Bounds::POSITIVE);
 
@@ -149,6 +183,7 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], form: Form, rows: &
     let is_forced = experiments.iter().any(Experiment::is_forced);
     let known = |known: Known, source| Knowledge::of(known, source);
     match (form, machine.scale()) {
+        (Form::PerMass, _) if experiments.iter().all(Experiment::is_run_down) => {}
         (Form::PerMass, scale) => {
             let bounds = reference(experiments).frequency_bounds();
             rows.free(Place::Frequency, Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds));
@@ -216,7 +251,10 @@ fn of_experiment(
     let first = rows.rows.len();
     let mut push = |place, parameter, knowledge| rows.push(place, Some(record), parameter, knowledge);
     let state = if experiment.begins_at_rest() { Knowledge::Fixed(0.0) } else { Knowledge::Free };
-    push(Place::Position, Parameter::named(named("initial_position"), "x₀", units.position.to_string()), state);
+    // Where nothing depends on the position, a velocity does not tell it.
+    let is_anywhere = experiment.is_run_down() && experiment.record().quantity() == Quantity::Velocity;
+    let position = if is_anywhere { Knowledge::Fixed(0.0) } else { state };
+    push(Place::Position, Parameter::named(named("initial_position"), "x₀", units.position.to_string()), position);
     push(Place::Velocity, Parameter::named(named("initial_velocity"), "v₀", units.velocity().to_string()), state);
     let mut count = 2;
     if let Some(drive) = experiment.drive() {
@@ -294,12 +332,16 @@ impl Table {
         }
         let reference = reference(experiments);
         require_swing(machine, reference)?;
+        require_spring(machine, &terms, experiments)?;
         let is_driven = experiments.iter().any(|experiment| experiment.drive().is_some());
         let is_declared = form == Form::Coefficient;
         let family = if is_driven || is_declared { family.with_breakaway() } else { family };
         let units = Units::of(reference.record());
         let mut rows = Builder::default();
         oscillator(machine, experiments, form, &mut rows);
+        if have_both_directions(experiments) {
+            between_directions(&terms, &units, reference.scales().1, &mut rows)?;
+        }
         let oscillator = rows.rows.len();
         for (term, parameter) in terms.iter().zip(terms.parameters(&units.position)) {
             match term {
@@ -415,7 +457,7 @@ impl Table {
         // Where a measured force sets the scale, a record that reads too much makes mass and stiffness too small.
         let by_force = if self.is_per_mass() { 0.0 } else { -1.0 };
         match self.rows[index].place {
-            Place::Position | Place::Velocity | Place::Offset | Place::Disturbance(_) => 1.0,
+            Place::Position | Place::Velocity | Place::Slope | Place::Wind | Place::Offset | Place::Disturbance(_) => 1.0,
             Place::DriveGain => -1.0,
             Place::Mass | Place::Stiffness => by_force,
             Place::Law(number) => self.family.fitted().nth(number).map_or(0.0, |parameter| {
@@ -437,7 +479,8 @@ impl Table {
         match self.rows[index].place {
             Place::Frequency | Place::Corner => -1.0,
             Place::Position | Place::Deflection => order,
-            Place::Velocity => order - 1.0,
+            Place::Velocity | Place::Wind => order - 1.0,
+            Place::Slope => order - 2.0,
             Place::Delay => 1.0,
             // A measured force stays as it is.
             Place::Mass if !self.is_per_mass() => 2.0 - order,

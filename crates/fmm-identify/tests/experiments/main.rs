@@ -13,6 +13,7 @@ mod impact;
 mod joint;
 mod no_friction;
 mod noisy_motion;
+mod run_down;
 mod same_statement;
 mod simulated;
 mod springs;

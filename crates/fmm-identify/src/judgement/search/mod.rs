@@ -9,7 +9,7 @@ use fmm_friction::{CoulombViscous, LawFamily, SearchStage};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::experiment::{Experiment, Experiments};
+use crate::experiment::{Experiment, Experiments, reference};
 use crate::fit::stages::Begin;
 use crate::friction_curve::projection::ShownFriction;
 use crate::identification::Identification;
@@ -72,6 +72,8 @@ impl Inquiry<'_> {
         }
         let mut found = run.fit(run.candidates(self.at(SearchStage::Simple))?, Start::Records)?;
         run.follow_special_cases(&mut found);
+        // A drift of a speed that only falls is friction as well.
+        let may_drift = may_drift && !reference(decays).is_run_down();
         let closest = closest(found.identifications.iter()).filter(|_| may_drift);
         let drifting = closest.and_then(|found| found.with_drift(decays));
         let mut decays = decays;
@@ -327,7 +329,8 @@ impl Run<'_, '_> {
             let behind = behind_filter(self.decays, &found.identifications).ok().flatten();
             behind.is_some_and(|(found, _)| !found.structure.is_correlated())
         };
-        let structured = plain.as_ref().filter(|plain| plain.is_structured && !is_filtered(found));
+        let has_spring = !reference(self.decays).is_run_down();
+        let structured = plain.as_ref().filter(|plain| has_spring && plain.is_structured && !is_filtered(found));
         let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, few, self.end));
         let shown = further.as_ref().or(plain.as_ref());
         let beside = shown.map_or(Terms::NONE, |shown| shown.terms.clone());
