@@ -1,4 +1,4 @@
-//! Friction out of the record of a vibration: `fmm identify FILE` and `fmm compare FILE`.
+//! Friction out of the records of a motion: `fmm identify FILE ..` and `fmm compare FILE ..`.
 //!
 //! Reads a record of displacement, velocity or acceleration, prepares it, fits it by one law or by several, and gives
 //! out findings, their uncertainties, and the limits of the record. The quantity of a channel follows from its unit, a
@@ -26,6 +26,13 @@ use serde::Serialize;
 pub(crate) struct Arguments {
     #[command(flatten)]
     given: Given,
+    /// Further records of the same machine, read by the same options: all are fitted together, with an initial state
+    /// and an offset for each
+    #[arg(value_name = "FILE", conflicts_with = DRIVE)]
+    further: Vec<PathBuf>,
+    /// The normal load (N) on the contact in each record, in the order of the files
+    #[arg(long, value_name = "N,..", value_delimiter = ',', conflicts_with = "normal_load")]
+    normal_loads: Vec<f64>,
     #[command(flatten)]
     question: Question,
     /// The channel with the measured force (N) that drives the machine; without it and --base, the machine vibrates
@@ -102,25 +109,25 @@ fn experiment(
     } else if let Some(channel) = &arguments.base {
         Experiment::driven(record, Drive::base(&measured(arguments, channel, None, host)?)?, preparation)?
     } else {
-        Experiment::ring_down(record, preparation)?
+        return arguments.question.free(record, preparation);
     };
     arguments.question.seen(experiment)
 }
 
 /// Fits all candidates and tells how far they are.
 fn fitted(
-    arguments: &Arguments,
-    decay: &Experiment,
+    question: &Question,
+    decays: &[Experiment],
     candidates: &[Candidate],
     host: &Host<'_>,
 ) -> Result<Comparison, Box<dyn Error>> {
-    let samples = decay.summary().samples as f64;
+    let samples = decays.iter().map(|decay| decay.summary().samples).sum::<usize>() as f64;
     host.while_working(|tell| {
         let show = |law: &str, progress: &Progress<'_>| {
             let rms = (progress.sum_of_squares() / samples).sqrt();
             tell(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()))
         };
-        arguments.question.answer(std::slice::from_ref(decay), candidates, show)
+        question.answer(decays, candidates, show)
     })?
 }
 
@@ -144,6 +151,9 @@ pub(crate) struct Content<'a> {
     /// Samples of the preferred law, by `--json=full`.
     #[serde(skip_serializing_if = "Option::is_none")]
     fit: Option<Samples<'a>>,
+    /// The same of the further records, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    further_fits: Vec<Samples<'a>>,
 }
 
 /// The record that was fitted and its fit, sample by sample, in the unit of the record.
@@ -159,6 +169,16 @@ struct Samples<'a> {
     residuals: Vec<f64>,
 }
 
+impl Found {
+    /// The record of `decay` and the motion `fitted` to it, sample by sample.
+    fn samples<'a>(&'a self, decay: &'a Experiment, fitted: Vec<f64>) -> Samples<'a> {
+        let record = decay.record();
+        let residuals = record.values().iter().zip(&fitted).map(|(measured, fit)| measured - fit).collect();
+        let (law, unit) = (self.comparison.preferred().law(), record.unit());
+        Samples { law, unit, time_s: record.times().collect(), measured: record.values(), fitted, residuals }
+    }
+}
+
 impl Answer for Found {
     fn text(&self) -> Result<String, Box<dyn Error>> {
         // The friction that the record shows, then the law that explains it.
@@ -168,24 +188,21 @@ impl Answer for Found {
     }
 
     fn document(&self, detail: Detail) -> Result<String, Box<dyn Error>> {
-        let record = self.decay.record();
-        let fit = match detail {
-            Detail::Brief => None,
+        let mut fits = match detail {
+            Detail::Brief => Vec::new(),
             Detail::Full => {
-                let fitted = self.fitted()?;
-                let residuals = record.values().iter().zip(&fitted).map(|(measured, fit)| measured - fit).collect();
-                let (law, unit) = (self.comparison.preferred().law(), record.unit());
-                let (time_s, measured) = (record.times().collect(), record.values());
-                Some(Samples { law, unit, time_s, measured, fitted, residuals })
+                self.decays.iter().zip(self.fitted()?).map(|(decay, fitted)| self.samples(decay, fitted)).collect()
             }
-        };
+        }
+        .into_iter();
         let content = Content {
             origin: &self.origin,
             remarks: &self.remarks,
             comparison: &self.comparison,
             friction_curve: self.curve.as_ref(),
             posterior: self.posterior.as_ref(),
-            fit,
+            fit: fits.next(),
+            further_fits: fits.collect(),
         };
         Document::new("identify-1", content).pretty()
     }
@@ -193,7 +210,7 @@ impl Answer for Found {
     /// The record with the preferred fit, the decay of its amplitude, the residuals, and the friction curve.
     fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
         let pictures = Pictures::of(self)?;
-        let unit = label("residual", self.decay.record().unit());
+        let unit = label("residual", self.decays[0].record().unit());
         let curve = self.curve_panels().map(|panels| ("friction_curve.svg", drawn(&panels)));
         let pictures = [
             ("fit.svg", drawn(&pictures.fit)),
@@ -224,7 +241,7 @@ pub(crate) fn identify(arguments: &Arguments, command: &str, host: &Host<'_>) ->
         if arguments.question.is_over(begun) {
             return Curve::Missing { missing: "the time limit is over".to_owned() };
         }
-        match FrictionCurve::beside(found.comparison.preferred(), std::slice::from_ref(&found.decay)) {
+        match FrictionCurve::beside(found.comparison.preferred(), &found.decays) {
             Ok(curve) => Curve::Found(Box::new(curve)),
             Err(error) => Curve::Missing { missing: error.to_string() },
         }
@@ -249,28 +266,46 @@ fn found(
     if let (true, Some(refusal)) = (arguments.posterior, Posterior::REFUSAL) {
         return Err(refusal.into());
     }
-    let input = arguments.given.read_mode(host)?;
-    let preparation = arguments.given.preparation().gain_uncertainty(arguments.question.scale_u);
-    let decay = experiment(arguments, &input.record, &preparation, host)?;
-    let comparison = fitted(arguments, &decay, candidates, host)?;
-    let bytes = arguments.given.bytes(host)?;
+    let further = arguments.further.iter().map(|file| Given { file: Some(file.clone()), ..arguments.given.clone() });
+    let all: Vec<Given> = std::iter::once(arguments.given.clone()).chain(further).collect();
+    let (mut origins, mut remarks, mut decays, mut digests) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for given in &all {
+        let input = given.read_mode(host)?;
+        let preparation = given.preparation().gain_uncertainty(arguments.question.scale_u);
+        let named = |error: Box<dyn Error>| match &given.file {
+            Some(file) if all.len() > 1 => format!("{}: {error}", file.display()).into(),
+            _ => error,
+        };
+        decays.push(experiment(arguments, &input.record, &preparation, host).map_err(named)?);
+        origins.push(input.origin);
+        remarks.extend(input.warnings);
+        digests.push(report::digest(&given.bytes(host)?));
+    }
+    let questions = arguments.question.under(&arguments.normal_loads, all.len())?;
+    let (question, factors) =
+        Question::together(&questions.into_iter().map(|one| (one, String::new())).collect::<Vec<_>>())?;
+    if factors.iter().any(|factor| *factor != 1.0) {
+        let loaded = decays.into_iter().zip(&factors).map(|(decay, factor)| decay.with_load_factor(*factor));
+        decays = loaded.collect::<Result<_, _>>()?;
+    }
+    let comparison = fitted(&question, &decays, candidates, host)?;
     Ok(Found {
-        origin: input.origin,
-        remarks: input.warnings,
-        decay,
+        origin: origins.join("\n"),
+        remarks,
+        decays,
         comparison,
         curve: None,
         posterior: None,
         failure: None,
         command: command.to_owned(),
-        sha256: report::digest(&bytes),
+        sha256: digests.join(" "),
     })
 }
 
 /// The same with the posterior, if it is asked for; what was found is given out without one as well.
 fn with_posterior(mut found: Found, arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     if arguments.posterior {
-        let posterior = || Posterior::of(found.comparison.preferred(), &found.decay);
+        let posterior = || Posterior::of(found.comparison.preferred(), &found.decays);
         match host.while_busy("posterior", posterior)? {
             Ok(posterior) => found.posterior = Some(posterior),
             Err(error) => found.failure = Some(error.to_string()),

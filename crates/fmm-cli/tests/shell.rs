@@ -41,6 +41,35 @@ fn lists_are_documents_too() {
     }
 }
 
+/// Runs of both directions are one problem, which shows the slope; the loads of records are as many as these.
+#[test]
+fn several_records_are_fitted_as_one() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let folder = std::env::temp_dir().join(format!("fmm-run-down-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let record = |name: &str| folder.join(name).display().to_string();
+    for (scenario, name, seed) in [("coast_down", "there.csv", 1), ("coast_down_back", "back.csv", 2)] {
+        let line = format!("simulate scenarios/{scenario}.json --record {} --noise 1e-3 --seed {seed}", record(name));
+        assert!(fmm_in(&examples, &line).status.success(), "{line}");
+    }
+    let runs = format!("--run-down --mass 1200 --mass-u 6 {} {}", record("there.csv"), record("back.csv"));
+    let output = fmm_in(&examples, &format!("identify {runs} --json=full"));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["preferred"], "coulomb + quadratic");
+    assert_eq!(document["further_fits"].as_array().map(Vec::len), Some(1));
+    let models = document["models"].as_array().unwrap();
+    let model = models.iter().find(|model| model["law"] == document["preferred"]).unwrap();
+    let findings = model["findings"].as_array().unwrap();
+    for (name, truth, most) in [("slope_force", 35.3, 1.0), ("friction_force", 144.0, 3.0), ("wind", 0.0, 0.04)] {
+        let finding = findings.iter().find(|finding| finding["name"] == name).unwrap();
+        assert!((finding["value"].as_f64().unwrap() - truth).abs() < most, "{finding}");
+    }
+    let output = fmm_in(&examples, &format!("compare {runs} --normal-loads 14"));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("--normal-loads has 1 load(s) for 2 record(s)"), "{error}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 #[test]
 fn every_command_prints_one_document() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");

@@ -158,7 +158,7 @@ impl IdentifyError {
     pub(crate) fn too_few_half_swings(found: usize, needed: usize) -> Self {
         let what = format!(
             "the record shows {found} half swings above its noise; at least {needed} are needed to see a period and a \
-             decay, and four samples in each to see a half swing"
+             decay, and four samples in each to see a half swing; a machine without a spring makes a run-down"
         );
         Self::TooFew { what, found, needed }
     }

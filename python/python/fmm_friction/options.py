@@ -57,7 +57,8 @@ class MachineOptions(TypedDict, total=False):
         hold: parameters to hold at a value, such as ``{"stribeck.exponent": 2}``.
         time_limit: time (s) after which a search begins no further law.
         pendulum: The machine is a pendulum; a number is the length (m) of the arc of one radian.
-        mass: moving mass (kg).
+        run_down: The machine has no spring: a coast-down or a spin-down.
+        mass: moving mass (kg), or moment of inertia (kg m²) for angles.
         mass_u: standard uncertainty of the mass (kg).
         stiffness: stiffness (N/m).
         stiffness_u: standard uncertainty of the stiffness (N/m).
@@ -75,6 +76,7 @@ class MachineOptions(TypedDict, total=False):
     hold: Mapping[str, float] | None
     time_limit: float | None
     pendulum: bool | float | None
+    run_down: bool | None
     mass: float | None
     mass_u: float | None
     stiffness: float | None

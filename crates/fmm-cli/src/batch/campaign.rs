@@ -197,7 +197,7 @@ impl RecordOptions {
     pub(crate) fn prepared(&self, host: &Host<'_>) -> Result<(Input, Experiment), Box<dyn Error>> {
         let input = self.given.read_mode(host)?;
         let preparation = self.given.preparation().gain_uncertainty(self.question.scale_u);
-        let experiment = self.question.seen(Experiment::ring_down(&input.record, &preparation)?)?;
+        let experiment = self.question.free(&input.record, &preparation)?;
         Ok((input, experiment))
     }
 }

@@ -24,7 +24,7 @@ pub(crate) const DRIVE: &str = "drive";
 pub(crate) const DRIVES: [&str; 3] = ["force", "base", "impact"];
 
 /// File, channel, and measured quantity.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Given {
     /// The record, in a format that `fmm formats` lists, or - for standard input; without it, the bundled record of a
     /// bicycle fork

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Experiment, Inquiry, Known, Machine, Sensor, Source};
+use fmm_identify::{Candidate, Comparison, Experiment, Inquiry, Known, Machine, Preparation, Sensor, Source};
 use fmm_model::Restoring;
-use fmm_record::Quantity;
+use fmm_record::{Quantity, Record};
 
 /// The machine, the laws and the sensor.
 #[derive(Debug, Clone, Args)]
@@ -32,7 +32,12 @@ pub(crate) struct Question {
     /// radian
     #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
     pendulum: Option<f64>,
-    /// The moving mass
+    /// The machine has no spring: the record is a run-down, such as the coast-down of a vehicle or the spin-down of a
+    /// rotor, by its velocity or position
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", default_value_t = false,
+        hide_default_value = true, value_name = "YES", conflicts_with_all = ["pendulum", "stiffness"])]
+    run_down: bool,
+    /// The moving mass; about an axis, with angles in rad, the moment of inertia (kg m²)
     #[arg(long, value_name = "KG")]
     mass: Option<f64>,
     /// Standard uncertainty of the mass
@@ -79,6 +84,26 @@ fn low_pass(text: &str) -> Result<(usize, Option<f64>), String> {
 }
 
 impl Question {
+    /// The free motion of the machine in a record, as its sensor sees it: a ring-down, or a run-down without a spring.
+    pub(crate) fn free(&self, record: &Record, preparation: &Preparation) -> Result<Experiment, Box<dyn Error>> {
+        let experiment = if self.run_down { Experiment::run_down } else { Experiment::ring_down };
+        self.seen(experiment(record, preparation)?)
+    }
+
+    /// The same question under each of these normal loads (N) in place of its own, or as it is for none.
+    pub(crate) fn under(&self, loads: &[f64], records: usize) -> Result<Vec<Self>, String> {
+        if loads.is_empty() {
+            return Ok(vec![self.clone(); records]);
+        }
+        if loads.len() != records {
+            let given = loads.len();
+            return Err(format!(
+                "--normal-loads has {given} load(s) for {records} record(s); give one for each record"
+            ));
+        }
+        Ok(loads.iter().map(|load| Self { normal_load: Some(*load), ..self.clone() }).collect())
+    }
+
     /// The experiment as its sensor sees it.
     pub(crate) fn seen(&self, experiment: Experiment) -> Result<Experiment, Box<dyn Error>> {
         let sensor = Sensor::default().with_delay(self.delay)?;
@@ -214,6 +239,7 @@ impl Question {
             let of_machine = |question: &Self| {
                 [
                     ("--pendulum", question.pendulum),
+                    ("--run-down", question.run_down.then_some(1.0)),
                     ("--mass", question.mass),
                     ("--mass-u", Some(question.mass_u)),
                     ("--stiffness", question.stiffness),

@@ -50,7 +50,7 @@ impl Layout {
 }
 
 /// Channel, quantity and unit, as far as the user says them; the rest is found in the file.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Choice {
     /// The channel with the motion, by name, with or without its unit, or by number counted from 0. Without it: the
     /// only channel, or the one that fits --quantity and --unit, or the one whose unit is that of a velocity or else of

@@ -29,7 +29,7 @@ mod unavailable {
         pub(crate) const REFUSAL: Option<&'static str> = Some(WHY);
 
         /// Refuses.
-        pub(crate) fn of(_: &Identification, _: &Experiment) -> Result<Self, Box<dyn Error>> {
+        pub(crate) fn of(_: &Identification, _: &[Experiment]) -> Result<Self, Box<dyn Error>> {
             Err(WHY.into())
         }
 

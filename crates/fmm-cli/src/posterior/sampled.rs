@@ -21,9 +21,9 @@ impl Posterior {
     /// Why there is none: there is.
     pub(crate) const REFUSAL: Option<&'static str> = None;
 
-    /// Draws from the posterior of what `preferred` found in `decay`.
-    pub(crate) fn of(preferred: &Identification, decay: &Experiment) -> Result<Self, Box<dyn Error>> {
-        Ok(Self(preferred.posterior(std::slice::from_ref(decay), &preferred.sampler())?))
+    /// Draws from the posterior of what `preferred` found in `decays`.
+    pub(crate) fn of(preferred: &Identification, decays: &[Experiment]) -> Result<Self, Box<dyn Error>> {
+        Ok(Self(preferred.posterior(decays, &preferred.sampler())?))
     }
 
     /// Text for a terminal.

@@ -29,14 +29,17 @@ const LAGS: usize = 300;
 
 /// The page on what was `found` in a record. The same input makes the same page.
 pub(crate) fn document(found: &Found) -> Result<String, Box<dyn Error>> {
-    let Found { origin, decay, comparison, posterior, .. } = found;
-    let name = origin.split(", channel").next().unwrap_or(origin);
+    let Found { origin, decays, comparison, posterior, .. } = found;
+    let name = |origin: &str| origin.split(", channel").next().unwrap_or(origin).to_owned();
+    let name = origin.lines().map(name).collect::<Vec<_>>().join(", ");
+    let described = origin.lines().zip(decays).map(|(origin, decay)| format!("{origin}. {}", decay.summary()));
+    let described: Vec<String> = described.map(|text| format!("<p>{}.</p>\n", escaped(&text))).collect();
     let pictures = Pictures::of(found)?;
     let json = found.document(Detail::Brief)?;
     let title = format!("Friction of {name}");
     let body = [
         format!("<h1>{}</h1>\n<p class=\"verdict\">{}</p>\n", escaped(&title), escaped(&comparison.headline())),
-        format!("<p>{}. {}.</p>\n", escaped(origin), escaped(&decay.summary().to_string())),
+        described.concat(),
         section("Findings", &findings(found)),
         posterior.as_ref().map_or_else(String::new, |posterior| section("Posterior", &posterior.html())),
         friction_curve(found),
@@ -53,7 +56,7 @@ pub(crate) fn document(found: &Found) -> Result<String, Box<dyn Error>> {
         section("Profiles", &profiles(found)?),
         section("Laws", &laws(found)),
         section("Residuals", &residuals(found, &pictures)),
-        section("Amplitude", &amplitude(found, &pictures)),
+        amplitude(found, &pictures),
         section("How this was made", &making(found)),
         // What looks like the end of a script ends it, wherever it stands.
         format!("<script type=\"application/json\" id=\"result\">{}</script>\n", json.replace('<', "\\u003c")),
@@ -140,16 +143,16 @@ fn laws(found: &Found) -> String {
             if is_excluded(law) { cell("excluded") } else { text_cell(&format!("{p:.3}")) },
         ]
     });
-    let unit = found.decay.record().unit();
+    let unit = found.decays[0].record().unit();
     let rms = label("rms residual", unit);
     let headings = ["law", &rms, "rank", "half swings", "rest from / s", "misfit + 2 rank", "p"];
     table("laws", &headings, rows)
 }
 
 fn residuals(found: &Found, pictures: &Pictures) -> String {
-    let unit = found.decay.record().unit();
+    let unit = found.decays[0].record().unit();
     let histogram = histogram(&label("residual", unit), "residuals", &pictures.residuals);
-    let summary = found.decay.summary();
+    let summary = found.decays[0].summary();
     let count = pictures.residuals.len();
     let last = ((PERIODS * summary.rate / summary.frequency) as usize).clamp(1, count.saturating_sub(1).max(1));
     let correlation = |lag: usize| Some((lag as f64 / summary.rate, autocorrelation(&pictures.residuals, lag)?));
@@ -169,10 +172,13 @@ fn residuals(found: &Found, pictures: &Pictures) -> String {
 
 /// The amplitudes, and the backbone if the record shows one.
 fn amplitude(found: &Found, pictures: &Pictures) -> String {
+    if found.decays[0].summary().is_run_down {
+        return String::new();
+    }
     let amplitudes =
         figure(&drawn(&pictures.amplitude), "The amplitude of each half swing, measured and fitted.", "amplitude");
-    let record = &*found.decay.record().equally_spaced();
-    let backbone = Backbone::of(record, &BackboneOptions::default()).ok().filter(|_| found.decay.drive().is_none());
+    let record = &*found.decays[0].record().equally_spaced();
+    let backbone = Backbone::of(record, &BackboneOptions::default()).ok().filter(|_| found.decays[0].drive().is_none());
     let backbone = backbone.map_or_else(String::new, |backbone| {
         let suggestion = backbone.suggestion();
         let caption = format!(
@@ -181,7 +187,7 @@ fn amplitude(found: &Found, pictures: &Pictures) -> String {
         );
         figure(&drawn(&backbone::panels(record, &backbone, &suggestion)), &caption, "backbone")
     });
-    amplitudes + &backbone
+    section("Amplitude", &(amplitudes + &backbone))
 }
 
 /// SHA-256 of `bytes` in hexadecimal digits.
@@ -230,7 +236,7 @@ mod tests {
         let k = coverage_factor(LEVEL, damping.degrees_of_freedom()).unwrap();
         let found = Found {
             origin: "<script>.csv, channel v: \"velocity\"".to_owned(),
-            decay,
+            decays: vec![decay],
             comparison,
             curve: None,
             posterior: None,

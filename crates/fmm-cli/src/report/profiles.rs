@@ -17,7 +17,7 @@ const TOP: f64 = 1.6;
 
 /// The intervals by the sum of squares beside those by the standard uncertainty, with a curve of each that bends.
 pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
-    let profiles = found.comparison.preferred().profiles(std::slice::from_ref(&found.decay), LEVEL)?;
+    let profiles = found.comparison.preferred().profiles(&found.decays, LEVEL)?;
     let (bent, straight): (Vec<&Profile>, Vec<_>) = profiles.profiles().iter().partition(|profile| profile.is_bent());
     let left_out = profiles.left_out().iter();
     let left_out = bullets(left_out.map(|(parameter, error)| format!("{}: none, as {error}", words(parameter.name()))));

@@ -207,7 +207,10 @@ impl fmt::Display for RecordSummary {
         match (self.is_run_down, quantity) {
             (true, Quantity::Velocity) => write!(f, "; runs down from {first} to {last} {unit}")?,
             (true, _) => write!(f, "; runs down over {first} {unit}")?,
-            _ => write!(f, "; {half_swings} peaks above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}")?,
+            _ => write!(
+                f,
+                "; {half_swings} peaks above the noise at {frequency:.4} Hz, amplitude {first} to {last} {unit}"
+            )?,
         }
         write!(f, "; noise {} {unit}", Rounded::significant(*noise, 2))?;
         if let Some(step) = self.resolution {

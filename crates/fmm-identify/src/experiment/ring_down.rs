@@ -122,20 +122,15 @@ impl Experiment {
         let amplitudes = &guess.amplitudes;
         let in_record = if is_acceleration { 2.0 * PI * guess.frequency() } else { 1.0 };
         let summary = RecordSummary {
-            from: record.start(),
-            to: record.end(),
             samples: kept.iter().map(Range::len).sum(),
             rate: used.as_ref().unwrap_or(record).rate(),
             quantity,
-            unit: record.unit().to_owned(),
             held_offset,
             gain_uncertainty,
             clock_uncertainty,
             release: released,
             half_swings: peaks.len(),
             amplitudes: (in_record * amplitudes[0], in_record * amplitudes[amplitudes.len() - 1]),
-            frequency: guess.frequency(),
-            noise,
             resolution,
             rest_from: rest_from(&views.cleaned, resolution.unwrap_or(0.0), guess.frequency()),
             spikes: spikes.iter().map(|spike| spike.count).sum(),
@@ -147,8 +142,7 @@ impl Experiment {
             interruption,
             upsampling,
             second_mode: seen.second_mode(),
-            is_driven: false,
-            is_run_down: false,
+            ..RecordSummary::unseen(record, guess.frequency(), noise)
         };
         let peaks = peaks.iter().map(|peak| (peak.time, peak.value)).collect();
         let nuisances = Nuisance::of_hum(&summary.hum).collect();

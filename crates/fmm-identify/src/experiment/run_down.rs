@@ -17,9 +17,11 @@ const PARTS: usize = 200;
 const FEWEST_POSITIONS: usize = 4;
 /// Standard deviations of the speed of a part by which it differs from another beyond chance.
 const BEYOND_CHANCE: f64 = 4.0;
-/// Share of the first speed by which a speed has to rise to be that of another run (1). Origin: chosen; wind and road
-/// slow a vehicle by turns, and hardly make it faster.
-const PUSHED: f64 = 0.02;
+/// Share of the first speed by which a speed has to rise to be that of another run (1). Origin: chosen; on the roads of
+/// public records, which rise and fall, coasting vehicles gain up to 32 %.
+const PUSHED: f64 = 0.5;
+/// Largest zero of a tachometer over the first speed (1). Origin: chosen; a speed that stays and is larger is none.
+const LARGEST_ZERO: f64 = 0.05;
 /// Share of the record at its end that tells a rest (1).
 const END: f64 = 0.1;
 
@@ -263,7 +265,9 @@ impl Speeds {
         let chance = BEYOND_CHANCE * self.noise * (2.0 / (end / 2) as f64).sqrt();
         let moves = |index: &usize| (self.parts[*index].1 - level).abs() > BEYOND_CHANCE * self.noise + chance;
         let first = (0..count).rev().find(moves).map_or(0, |index| index + 1);
-        ((before - after).abs() <= chance && first + end <= count + end / 2).then(|| (self.parts[first].0, level))
+        let is_zero = level.abs() <= LARGEST_ZERO * self.speed(0).abs();
+        let stays = (before - after).abs() <= chance && first + end <= count + end / 2;
+        (is_zero && stays).then(|| (self.parts[first].0, level))
     }
 
     /// Start values of the run in `record`.

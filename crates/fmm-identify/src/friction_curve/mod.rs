@@ -121,7 +121,8 @@ impl FrictionCurve {
     fn with_terms(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
         let reference = experiments.first().ok_or(IdentifyError::no_record())?;
         if experiments.iter().any(|experiment| experiment.drive().is_some() || experiment.lines().is_some()) {
-            let what = "friction over speed without a law is found from ring-downs and run-downs, not from driven motions";
+            let what =
+                "friction over speed without a law is found from ring-downs and run-downs, not from driven motions";
             return Err(IdentifyError::wrong_record(what.to_owned()));
         }
         if experiments.iter().any(|experiment| experiment.load_factor() != reference.load_factor()) {
@@ -315,7 +316,9 @@ fn scale(machine: &Machine, units: &Units, frequency: f64) -> (Meaning, f64, f64
         Scale::MassAndStiffness(..) => Some((1.0, 0.0)),
         _ => None,
     };
-    let Some((force, relative)) = mass.filter(|_| units.with_forces().is_some()) else { return (Meaning::PerMass, 1.0, 0.0) };
+    let Some((force, relative)) = mass.filter(|_| units.with_forces().is_some()) else {
+        return (Meaning::PerMass, 1.0, 0.0);
+    };
     match machine.normal_load().filter(|_| units.is_metric()) {
         Some(load) => {
             let by_load = load.uncertainty() / load.value();

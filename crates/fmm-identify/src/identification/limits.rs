@@ -54,7 +54,9 @@ impl Warning {
         warnings.extend(Self::of_noise(identification, decays));
         let unit = decays.first().map_or("", |decay| decay.record().unit());
         let is_scaled = matches!(machine.scale(), Scale::Mass(_) | Scale::Stiffness(_));
-        if is_scaled && !matches!(unit, "m" | "m/s" | "m/s²") {
+        let is_angle = matches!(unit, "rad" | "rad/s" | "rad/s²");
+        let needs_line = !is_angle || machine.normal_load().is_some();
+        if is_scaled && needs_line && !matches!(unit, "m" | "m/s" | "m/s²") {
             warnings.push(Self::NotSi { unit: unit.to_owned() });
         }
         warnings.extend(Self::of_narrow_stop(identification.motions()));

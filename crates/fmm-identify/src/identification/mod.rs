@@ -161,6 +161,11 @@ impl Identification {
         self.friction_at_rest
     }
 
+    /// True if the machine has a spring, on which it swings.
+    pub(crate) fn swings(&self) -> bool {
+        self.finding("natural_frequency_hz").or(self.finding("stiffness")).is_some()
+    }
+
     /// Declared machine.
     pub fn machine(&self) -> &Machine {
         &self.machine

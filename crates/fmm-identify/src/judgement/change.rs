@@ -4,7 +4,7 @@
 use fmm_friction::{AccelerationCoulomb, Coulomb, CoulombViscous, LawFamily};
 
 use crate::candidate::Candidate;
-use crate::experiment::{Experiment, reference};
+use crate::experiment::Experiment;
 use crate::identification::Identification;
 use crate::judgement::asked::Asked;
 use crate::machine::Terms;
@@ -14,7 +14,7 @@ use crate::machine::term::Term;
 /// where the records do not tell.
 pub(super) fn asked(found: &Identification, experiments: &[Experiment], term: Term) -> Option<Asked> {
     // In a run-down the speed falls with the time, and friction over both is one.
-    if reference(experiments).is_run_down() {
+    if experiments.iter().any(Experiment::is_run_down) {
         return None;
     }
     let is_next = |extended: &Candidate| extended.terms.has(term) && !found.fitted.model.terms.has(term);

@@ -81,7 +81,10 @@ pub(crate) fn behind_filter(
     identifications: &[Identification],
 ) -> Result<Option<(Identification, f64)>, IdentifyError> {
     let is_known = |decay: &Experiment| {
-        decay.sensor().low_pass().is_some() || decay.drive().is_some() || !decay.record().is_equally_spaced()
+        decay.sensor().low_pass().is_some()
+            || decay.drive().is_some()
+            || decay.is_run_down()
+            || !decay.record().is_equally_spaced()
     };
     // Forces along motions have no such sensor.
     if decays.is_empty() || decays.iter().any(is_known) {

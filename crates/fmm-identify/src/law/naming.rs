@@ -80,7 +80,8 @@ impl Units {
     /// about an axis with angles in rad, by a moment of inertia in kg m²; `None` for other positions.
     pub(crate) fn with_forces(&self) -> Option<Self> {
         let is_angle = self.position == Unit::of("rad");
-        (is_angle || self.is_metric()).then(|| Self { force: Unit::of(if is_angle { "N m" } else { "N" }), ..self.clone() })
+        (is_angle || self.is_metric())
+            .then(|| Self { force: Unit::of(if is_angle { "N m" } else { "N" }), ..self.clone() })
     }
 
     /// Unit of a mass, by these forces.

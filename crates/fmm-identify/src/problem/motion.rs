@@ -92,7 +92,7 @@ impl Table {
             normal_load: load * experiment.load_factor(),
             change,
             curvature,
-            initial: [values[self.shared], values[self.shared + 1]],
+            initial: [Place::Position, Place::Velocity].map(|place| own(place).unwrap_or(D::from(0.0))),
             force,
             tolerance: None,
         })

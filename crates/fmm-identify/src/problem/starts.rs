@@ -11,7 +11,7 @@ use crate::candidate::Candidate;
 use crate::experiment::Experiment;
 use crate::experiment::first_guess::Dissipation;
 use crate::experiment::reference;
-use crate::experiment::run_down::slope;
+use crate::experiment::run_down::{are_run_downs, slope};
 use crate::law::Law;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::term::Term;
@@ -97,7 +97,7 @@ impl Problem<'_> {
     /// True for run-downs whose only damping is that with the square of the speed.
     fn drags(&self) -> bool {
         let is_drag = self.terms().has(Term::QuadraticDamping) && !self.has_linear_damping();
-        is_drag && reference(&self.experiments).is_run_down()
+        is_drag && are_run_downs(&self.experiments) == Some(true)
     }
 
     /// Start values under one hypothesis.

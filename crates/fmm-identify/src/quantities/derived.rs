@@ -149,7 +149,8 @@ impl Inputs<'_> {
                 if self.is_si() {
                     let force = force / gain;
                     derived.extend(mass.map(|_| (stated(Form::Force), force)));
-                    derived.extend(load.filter(|_| self.is_along_a_line()).map(|load| (stated(Form::Mu), force / load)));
+                    derived
+                        .extend(load.filter(|_| self.is_along_a_line()).map(|load| (stated(Form::Mu), force / load)));
                 }
             } else if mass.is_some() && (role == Role::Slope || is_force(role) && self.is_si()) {
                 derived.push((stated(Form::Force), force));

@@ -149,19 +149,21 @@ fn require_swing(machine: &Machine, record: &Experiment) -> Result<(), IdentifyE
 
 /// Refuses run-downs beside other experiments, and what a machine without a spring does not have.
 fn require_spring(machine: &Machine, terms: &Terms, experiments: &[Experiment]) -> Result<(), IdentifyError> {
-    let contradiction = match are_run_downs(experiments) {
-        None => "a run-down is that of a machine without a spring, and other experiments beside it have one; fit them apart",
-        Some(false) => return Ok(()),
-        Some(true) if !matches!(machine.scale(), Scale::PerUnitMass | Scale::Mass(_)) => {
+    let is_bent = terms.has_spring() || terms.has(Term::Position) || machine.restoring() != Restoring::Linear;
+    let is_scaled_otherwise = !matches!(machine.scale(), Scale::PerUnitMass | Scale::Mass(_));
+    Err(IdentifyError::contradiction(match are_run_downs(experiments) {
+        None => {
+            "a run-down is that of a machine without a spring, and other experiments beside it have one; fit them apart"
+        }
+        Some(true) if is_scaled_otherwise => {
             "a run-down has no spring: give a mass (kg, or kg m² for angles) or nothing, and no stiffness"
         }
-        Some(true) if terms.has_spring() || terms.has(Term::Position) || machine.restoring() != Restoring::Linear => {
+        Some(true) if is_bent => {
             "a run-down has no spring and no middle of its path; leave out the terms of the spring, friction over the \
              position, and the pendulum"
         }
-        Some(true) => return Ok(()),
-    };
-    Err(IdentifyError::contradiction(contradiction))
+        Some(_) => return Ok(()),
+    }))
 }
 
 /// The rows of what tells the two directions of run-downs apart: a constant force, and wind where `terms` have a drag
@@ -183,7 +185,7 @@ fn oscillator(machine: &Machine, experiments: &[Experiment], form: Form, rows: &
     let is_forced = experiments.iter().any(Experiment::is_forced);
     let known = |known: Known, source| Knowledge::of(known, source);
     match (form, machine.scale()) {
-        (Form::PerMass, _) if experiments.iter().all(Experiment::is_run_down) => {}
+        (Form::PerMass, _) if are_run_downs(experiments) == Some(true) => {}
         (Form::PerMass, scale) => {
             let bounds = reference(experiments).frequency_bounds();
             rows.free(Place::Frequency, Parameter::new("natural_frequency_hz", "f₀", "Hz").bounded(bounds));
@@ -253,10 +255,11 @@ fn of_experiment(
     let state = if experiment.begins_at_rest() { Knowledge::Fixed(0.0) } else { Knowledge::Free };
     // Where nothing depends on the position, a velocity does not tell it.
     let is_anywhere = experiment.is_run_down() && experiment.record().quantity() == Quantity::Velocity;
-    let position = if is_anywhere { Knowledge::Fixed(0.0) } else { state };
-    push(Place::Position, Parameter::named(named("initial_position"), "x₀", units.position.to_string()), position);
+    if !is_anywhere {
+        push(Place::Position, Parameter::named(named("initial_position"), "x₀", units.position.to_string()), state);
+    }
     push(Place::Velocity, Parameter::named(named("initial_velocity"), "v₀", units.velocity().to_string()), state);
-    let mut count = 2;
+    let mut count = if is_anywhere { 1 } else { 2 };
     if let Some(drive) = experiment.drive() {
         if drive.gain_uncertainty() > 0.0 {
             let name = if drive.is_force() { "force_gain" } else { "base_gain" };
@@ -457,7 +460,9 @@ impl Table {
         // Where a measured force sets the scale, a record that reads too much makes mass and stiffness too small.
         let by_force = if self.is_per_mass() { 0.0 } else { -1.0 };
         match self.rows[index].place {
-            Place::Position | Place::Velocity | Place::Slope | Place::Wind | Place::Offset | Place::Disturbance(_) => 1.0,
+            Place::Position | Place::Velocity | Place::Slope | Place::Wind | Place::Offset | Place::Disturbance(_) => {
+                1.0
+            }
             Place::DriveGain => -1.0,
             Place::Mass | Place::Stiffness => by_force,
             Place::Law(number) => self.family.fitted().nth(number).map_or(0.0, |parameter| {

@@ -11,6 +11,7 @@ use fmm_uq::Contribution;
 use crate::finding::{Finding, name_width};
 use crate::identification::Identification;
 use crate::judgement::rules::EXCLUDED;
+use crate::judgement::score_test::Extension;
 use crate::judgement::{Comparison, ScoreTest};
 use crate::machine::term::{CHANGE_PER_HALF_CYCLE, RISE_OVER_POSITION};
 use crate::warning::{Warning, write_warnings};
@@ -27,11 +28,13 @@ impl Identification {
                 Some(time) => format!("at rest from {time:.4} s"),
                 None => "still moving at the end of the record".to_owned(),
             };
-            let count = motion.half_swings();
+            // A run-down has no swings.
+            let swings =
+                if self.swings() { format!("has {} half swings, ", motion.half_swings()) } else { "is ".to_owned() };
             let seen = rests.get(record).copied().flatten();
             let ends =
                 seen.map_or(ends.clone(), |time| format!("{ends}; within its noise the record rests from {time:.3} s"));
-            writeln!(f, "  {which}the fitted motion has {count} half swings, {ends}")?;
+            writeln!(f, "  {which}the fitted motion {swings}{ends}")?;
         }
         Ok(())
     }
@@ -130,7 +133,11 @@ impl Comparison {
         } else if is_alone {
             "a comparison with other laws would show whether the record asks for this one"
         } else if self.is_decided() {
-            "more half swings or less noise would make its values surer"
+            if preferred.swings() {
+                "more half swings or less noise would make its values surer"
+            } else {
+                "more runs or less noise would make its values surer"
+            }
         } else {
             "releases of other amplitudes fitted together, or less noise, would tell the laws apart"
         };
@@ -232,10 +239,15 @@ impl fmt::Display for Comparison {
         if significant.is_empty() && !self.score_tests().is_empty() && is_simple {
             // A law that has it does not look for it.
             let law = self.preferred().law();
-            let own = [("quadratic damping", "quadratic"), ("a softening spring", "spring")];
-            let further = own.iter().filter(|(_, term)| !law.contains(term)).map(|(words, _)| *words);
+            let tested = |extension: Extension| self.score_tests().iter().any(|test| test.extension == extension);
+            let looked = [
+                ("friction that changes with speed", true),
+                ("presliding", tested(Extension::Presliding)),
+                ("quadratic damping", tested(Extension::QuadraticDamping) && !law.contains("quadratic")),
+                ("a softening spring", tested(Extension::SofteningSpring) && !law.contains("spring")),
+            ];
             let looked: Vec<&str> =
-                ["friction that changes with speed", "presliding"].into_iter().chain(further).collect();
+                looked.iter().filter(|(_, is_listed)| *is_listed).map(|(words, _)| *words).collect();
             writeln!(f, "  looked for and not seen: {}", looked.join(", "))?;
         }
         let preferred = self.preferred();

@@ -9,6 +9,16 @@ use crate::warning::{Warning, to_three_digits};
 /// Factor of the uncertainties that is worth a word (1).
 const NOTABLE: f64 = 1.1;
 
+/// Reason why a record in this `unit` gives no coefficient of friction.
+fn limit_of_unit(unit: &str) -> &'static str {
+    if unit.starts_with("rad") {
+        "a normal load makes a coefficient mu of the torque over its radius alone"
+    } else {
+        "no mass in kg makes a friction force in N of it, and no normal load a coefficient mu; give the scale of the instrument \
+         in metres"
+    }
+}
+
 impl Warning {
     /// The sentences of warnings about friction that varies, and of those about disturbances and forces; nothing for
     /// others.
@@ -112,11 +122,7 @@ impl Warning {
                 "the beginning of the record is not described: without its first {time:.2} s {law} explains the rest; a sensor that \
                  filters or is late, or a release that is not free, makes such a beginning: state the sensor, or begin later"
             ),
-            Self::NotSi { unit } => write!(
-                f,
-                "the record is in {unit}, of which no mass in kg makes a friction force in N, and no normal load a coefficient mu; give \
-                 the scale of the instrument in metres"
-            ),
+            Self::NotSi { unit } => write!(f, "the record is in {unit}: {}", limit_of_unit(unit)),
             Self::DependsOnLaw { parameter, law, finding } => write!(
                 f,
                 "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \

@@ -2,12 +2,12 @@
 
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
-    Candidate, Comparison, Experiment, FrictionCurve, Identification, IdentifyError, Inquiry, Known, Machine, Preparation,
-    identify, search,
+    Candidate, Comparison, Experiment, FrictionCurve, Identification, IdentifyError, Inquiry, Known, Machine,
+    Preparation, identify, search,
 };
 use fmm_record::{Quantity, Record};
-use rand_chacha::rand_core::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
 
 /// Deceleration a + c v + q v² of a run, of a in m/s², c in 1/s and q in 1/m.
@@ -89,7 +89,8 @@ fn experiment(record: &Record) -> Experiment {
 fn losses_are_those_of_the_closed_form() {
     let law = Candidate::named("coulomb_viscous + quadratic").unwrap();
     for losses in CASES {
-        for (v0, quantity) in [(30.0, Quantity::Velocity), (-30.0, Quantity::Velocity), (30.0, Quantity::Displacement)] {
+        for (v0, quantity) in [(30.0, Quantity::Velocity), (-30.0, Quantity::Velocity), (30.0, Quantity::Displacement)]
+        {
             let run = experiment(&run(losses, v0, quantity, 0.0, 1));
             let found = Inquiry::of(&Machine::per_unit_mass(), &[run]).candidate(&law).unwrap();
             let value = |name: &str| found.finding(name).unwrap().value();
@@ -122,7 +123,8 @@ fn losses_are_found_without_a_law() {
         (CASES[2], "coulomb_viscous + quadratic", 3),
         (Losses { a: 0.1, c: 0.0, q: 4e-4 }, "coulomb + quadratic", 4),
     ] {
-        let found = search(&Machine::per_unit_mass(), &[experiment(&run(losses, 30.0, Quantity::Velocity, 0.02, seed))]);
+        let found =
+            search(&Machine::per_unit_mass(), &[experiment(&run(losses, 30.0, Quantity::Velocity, 0.02, seed))]);
         let found: Comparison = found.unwrap();
         let best = found.preferred();
         assert_eq!(best.law(), law, "{found}");
