@@ -75,7 +75,8 @@ impl Unseen {
     ///
     /// Friction that rises with the deflection looks like less friction and more damping, as both follow the amplitude.
     pub(crate) fn over_position(found: &Identification, experiments: &[Experiment]) -> Option<Self> {
-        let extended = with_position(&Candidate::fitted(found)).filter(|_| !reference(experiments).is_run_down())?;
+        let extended =
+            with_position(&Candidate::fitted(found)).filter(|_| !experiments.iter().any(Experiment::is_run_down))?;
         let asked = Asked::of(found, experiments, &extended, Term::Position)?;
         Some(Self::of(Kind::OverPosition, &asked, reference(experiments).deflections().largest_square))
     }
