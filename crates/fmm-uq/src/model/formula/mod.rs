@@ -47,8 +47,8 @@ impl Formula {
     /// values.
     ///
     /// # Errors
-    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs, or has a
-    /// name that is not among `names`; [`UncertaintyError::Invalid`] for a name given twice, for one that no formula
+    /// [`UncertaintyError::Model`] if the text is no formula, has more than 200 parentheses, powers and signs within
+    /// each other, or has a name that is not among `names`; [`UncertaintyError::Invalid`] for a name given twice, for one that no formula
     /// can contain, and for that of a constant or function.
     pub fn new(text: &str, names: &[&str]) -> Result<Self, UncertaintyError> {
         for (place, name) in names.iter().enumerate() {
@@ -64,8 +64,10 @@ impl Formula {
         }
         let steps = parser::parse(text)?.into_iter().map(|step| {
             let Step::Name(name) = step else { return Ok(step) };
-            let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            let unknown = || UncertaintyError::model(format!("there is no quantity {name}; there is {known}"));
+            let unknown = || {
+                let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+                UncertaintyError::model(format!("there is no quantity {name}; there is {known}"))
+            };
             names.iter().position(|other| *other == name).map(Step::Quantity).ok_or_else(unknown)
         });
         Ok(Self { text: text.trim().to_owned(), quantities: names.len(), steps: steps.collect::<Result<_, _>>()? })
@@ -231,5 +233,15 @@ mod tests {
         assert!(Formula::new(&"atan2(".repeat(200), &["x"]).is_err());
         let deep = format!("{}x{}", "(".repeat(200), ")".repeat(200));
         assert_eq!(Formula::new(&deep, &["x"]).unwrap().evaluate(&[2.0]).unwrap(), 2.0);
+    }
+
+    /// What stands beside each other takes the parser no deeper.
+    #[test]
+    fn sums_are_as_long_as_they_like() {
+        let long = "x + (-x)^2*2 - x/(x - -1) + ".repeat(1000) + "x";
+        let found = Formula::new(&long, &["x"]).unwrap().evaluate(&[2.0]).unwrap();
+        assert!((found - (1000.0 * (10.0 - 2.0 / 3.0) + 2.0)).abs() < 1e-9, "{found}");
+        assert!(Formula::new(&("2^".repeat(201) + "x"), &["x"]).is_err());
+        assert!(Formula::new(&"x)".repeat(300), &["x"]).is_err());
     }
 }

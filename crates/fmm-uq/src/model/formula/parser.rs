@@ -12,7 +12,7 @@ use winnow::token::{any, one_of, take_while};
 
 use crate::error::UncertaintyError;
 
-/// Parentheses, powers and signs that a formula may have: each may take the parser one level deeper.
+/// Parentheses, powers and signs that a formula may have within each other: each takes the parser one level deeper.
 const DEEPEST: usize = 200;
 
 /// One step of an evaluation, on a stack of values.
@@ -132,8 +132,8 @@ type Steps = Vec<Step>;
 
 /// The steps of a formula, with quantities by their names.
 pub(super) fn parse(text: &str) -> Result<Steps, UncertaintyError> {
-    if text.matches(['(', '^', '-', '+']).count() > DEEPEST {
-        let what = format!("a formula may have at most {DEEPEST} parentheses, powers and signs");
+    if depth(text) > DEEPEST {
+        let what = format!("a formula may have at most {DEEPEST} parentheses, powers and signs within each other");
         return Err(UncertaintyError::model(what));
     }
     let steps = preceded(multispace0, sum).parse(text).map_err(|error| {
@@ -147,6 +147,32 @@ pub(super) fn parse(text: &str) -> Result<Steps, UncertaintyError> {
         }
         None => Ok(steps),
     }
+}
+
+/// How many parentheses, powers and signs of a formula lie within each other, at most. A sum may be as long as it likes.
+fn depth(text: &str) -> usize {
+    // Powers and signs since the last weaker operator, for each parenthesis that is open.
+    let (mut chains, mut depth, mut deepest) = (vec![0], 0, 0);
+    let mut operand = false;
+    for letter in text.chars().filter(|letter| !letter.is_whitespace()) {
+        let is_sign = matches!(letter, '+' | '-') && !operand;
+        match letter {
+            '(' => {
+                chains.push(0);
+                depth += 1;
+            }
+            ')' if chains.len() > 1 => depth -= 1 + chains.pop().unwrap_or(0),
+            '+' | '-' | '*' | '/' | ',' if !is_sign => depth -= chains.last_mut().map_or(0, std::mem::take),
+            '^' | '+' | '-' => {
+                depth += 1;
+                chains.last_mut().into_iter().for_each(|chain| *chain += 1);
+            }
+            _ => {}
+        }
+        operand = !matches!(letter, '(' | ',' | '+' | '-' | '*' | '/' | '^');
+        deepest = deepest.max(depth);
+    }
+    deepest
 }
 
 /// Error of a text that is no formula from `rest` on.
