@@ -35,7 +35,7 @@ const ROOMS: &[(&str, &str)] = &[
     ),
     (
         "fmm-uq",
-        "failure error model moments region rounding distributions groups inputs gum stream validation monte_carlo",
+        "failure error model moments region rounding conformity distributions groups inputs gum stream validation monte_carlo",
     ),
 ];
 

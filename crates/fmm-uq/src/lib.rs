@@ -39,6 +39,7 @@
 //! | which input matters? | [`Budget::contributions`]; with interactions [`VarianceShare`] (Sobol') | [`VarianceShare`]: correlated inputs |
 //! | a trial takes a second? | many machines and [`PartialRun`]s | |
 //! | the model is a text, known at run time only? | `Formula` (feature `formula`) | models with conditions or loops |
+//! | does it keep its limits? | [`ToleranceInterval`]: specific risk, guard band, limits of acceptance | risks over a production, which need its spread |
 //! | how is a result stated? | a [`Budget`] prints; [`Budget::statement`], [`MonteCarlo::statement`] | |
 //! | what differs between runs, laboratories or specimens? | [`AnalysisOfVariance`], [`Precision`] | |
 //! | which value do several results agree on? | [`Consensus`], [with what they share](Consensus::with_shared) | shared errors that nobody stated |
@@ -87,6 +88,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod conformity;
 mod distributions;
 mod error;
 mod failure;
@@ -101,6 +103,7 @@ mod rounding;
 mod stream;
 mod validation;
 
+pub use conformity::ToleranceInterval;
 pub use distributions::Distribution;
 pub use error::UncertaintyError;
 pub use failure::{Failure, FailureKind, Failures};
