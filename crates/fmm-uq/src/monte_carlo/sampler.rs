@@ -9,6 +9,9 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use crate::distributions::{Distribution, Ziggurat};
 use crate::inputs::{Ensemble, Inputs};
 
+/// Rows whose dependent inputs are computed together.
+const TOGETHER: usize = 8;
+
 /// Sampler of the inputs of a trial: independent inputs one by one, the others through a common set of normal scores.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampler {
@@ -103,31 +106,47 @@ impl Sampler {
         if self.dependent.is_empty() {
             return;
         }
-        let mut scores = vec![0.0; self.dependent.len()];
-        let mut stretches = vec![1.0; self.ensembles.len()];
-        for row in rows.chunks_exact_mut(self.width) {
-            for score in &mut scores {
-                *score = StandardNormal.sample(rng);
+        let mut scores = vec![[0.0; TOGETHER]; self.dependent.len()];
+        let mut stretches = vec![[1.0; TOGETHER]; self.ensembles.len()];
+        for rows in rows.chunks_mut(self.width * TOGETHER) {
+            for row in 0..rows.len() / self.width {
+                for score in &mut scores {
+                    score[row] = StandardNormal.sample(rng);
+                }
+                for (stretch, (nu, chi)) in stretches.iter_mut().zip(&self.ensembles) {
+                    stretch[row] = (nu / chi.sample(rng)).sqrt();
+                }
             }
-            for (stretch, (nu, chi)) in stretches.iter_mut().zip(&self.ensembles) {
-                *stretch = (nu / chi.sample(rng)).sqrt();
-            }
-            self.combine(&scores, &stretches, row);
+            self.combine(&scores, &stretches, rows);
         }
     }
 
-    fn combine(&self, scores: &[f64], stretches: &[f64], row: &mut [f64]) {
+    /// Writes the dependent inputs of up to [`TOGETHER`] rows. A sum of products waits for each of its terms, those of
+    /// several rows do not wait for each other.
+    fn combine(&self, scores: &[[f64; TOGETHER]], stretches: &[[f64; TOGETHER]], rows: &mut [f64]) {
         for ((margin, root), at) in self.dependent.iter().zip(&self.root).zip(1..) {
-            let z: f64 = root[..at].iter().zip(scores).map(|(l, score)| l * score).sum();
-            row[margin.input] = match &margin.kind {
-                MarginKind::Normal { mean, standard_deviation } => mean + standard_deviation * z,
-                MarginKind::Ensemble { mean, scale, ensemble } => mean + scale * (z * stretches[*ensemble]),
-                MarginKind::Copula(distribution) => {
-                    let probability = Normal::standard().cdf(z);
-                    // Beyond eight standard deviations the probability rounds to 1, which has no quantile.
-                    distribution.quantile_at(probability.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0))
+            let mut sums = [-0.0; TOGETHER];
+            for (l, scores) in root[..at].iter().zip(scores) {
+                for (sum, score) in sums.iter_mut().zip(scores) {
+                    *sum += l * score;
                 }
-            };
+            }
+            for ((number, row), z) in rows.chunks_exact_mut(self.width).enumerate().zip(sums) {
+                row[margin.input] = Self::value(&margin.kind, z, |ensemble| stretches[ensemble][number]);
+            }
+        }
+    }
+
+    /// The value of an input of this `kind` at the normal score `z`, `stretch` giving that of its ensemble.
+    fn value(kind: &MarginKind, z: f64, stretch: impl Fn(usize) -> f64) -> f64 {
+        match kind {
+            MarginKind::Normal { mean, standard_deviation } => mean + standard_deviation * z,
+            MarginKind::Ensemble { mean, scale, ensemble } => mean + scale * (z * stretch(*ensemble)),
+            MarginKind::Copula(distribution) => {
+                let probability = Normal::standard().cdf(z);
+                // Beyond eight standard deviations the probability rounds to 1, which has no quantile.
+                distribution.quantile_at(probability.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0))
+            }
         }
     }
 }
