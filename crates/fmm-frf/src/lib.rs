@@ -73,6 +73,8 @@ mod error;
 mod friction;
 mod impulse;
 mod modal;
+#[cfg(feature = "modes")]
+mod modes;
 mod response;
 
 pub use average::{AverageOptions, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage};
@@ -87,6 +89,10 @@ pub use fmm_record::Complex64;
 pub use friction::{CoulombLine, FrictionSpectrum, Harmonic, coulomb_impact_duration};
 pub use impulse::{Hit, Pulse, impulse};
 pub use modal::{Background, RationalFit};
+#[cfg(feature = "modes")]
+pub use modes::{
+    DiagramPole, MeasuredResponse, ModalFit, ModalOptions, Mode, Pole, Residue, ShapePoint, StabilisationDiagram,
+};
 pub use response::{FrequencyResponse, Resonance, ResponseForm, SingleDegreeOfFreedom};
 
 #[cfg(doctest)]

@@ -77,6 +77,12 @@ impl FrequencyResponse {
         Ok(Self { form, frequencies: Arc::clone(frequencies), values, decay_rate })
     }
 
+    /// A response at `frequencies` that are known to increase, of values that are known to be finite.
+    #[cfg(feature = "modes")]
+    pub(crate) fn at_lines(form: ResponseForm, frequencies: &[f64], values: Vec<Complex64>, decay_rate: f64) -> Self {
+        Self { form, frequencies: frequencies.into(), values, decay_rate }
+    }
+
     /// Form of all values.
     pub fn form(&self) -> ResponseForm {
         self.form
