@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use clap::ValueEnum;
+use fmm_frf::FrfError;
 use fmm_identify::IdentifyError;
 use fmm_record::RecordError;
 use serde::Serialize;
@@ -128,13 +129,19 @@ impl Refusal {
     }
 }
 
-/// An error of a record with the remedy in the words of the options.
+/// An error with the remedy in the words of the options.
 #[derive(Debug, thiserror::Error)]
 #[error("{error}; {remedy}")]
 pub(crate) struct Remedied {
     #[source]
-    pub(crate) error: RecordError,
-    pub(crate) remedy: String,
+    error: Box<dyn Error + Send + Sync>,
+    remedy: String,
+}
+
+impl Remedied {
+    pub(crate) fn new(error: impl Error + Send + Sync + 'static, remedy: impl Into<String>) -> Self {
+        Self { error: Box::new(error), remedy: remedy.into() }
+    }
 }
 
 /// Kind of an error, by the first cause that has one.
@@ -157,6 +164,15 @@ fn code(error: &(dyn Error + 'static)) -> &'static str {
             IdentifyError::Contradiction { .. } => "contradiction",
             IdentifyError::Record(error) => code(error),
             _ => "record",
+        };
+    }
+    if let Some(error) = error.downcast_ref() {
+        return match error {
+            FrfError::Values { .. } => "values",
+            FrfError::Mismatch { .. } => "contradiction",
+            FrfError::TooFew { .. } | FrfError::Outside { .. } => "record",
+            FrfError::NoFit { .. } => "fit",
+            _ => "refused",
         };
     }
     error.source().map_or("refused", code)

@@ -42,7 +42,7 @@ enum Command {
     /// Simulate a machine with a sliding contact
     #[command(after_help = simulate::HELP)]
     Simulate(simulate::Arguments),
-    /// Estimate the frequency response of a machine from impact tests
+    /// Estimate the frequency response of a machine from impact tests, and its modes from these or measured responses
     #[command(allow_negative_numbers = true)]
     Frf(frf::Arguments),
     /// State the uncertainty of a result that follows from others by a formula
@@ -164,7 +164,7 @@ impl Command {
             Self::Force(arguments) => Box::new(force::force(arguments, host)?),
             Self::Backbone(arguments) => Box::new(backbone::backbone(arguments, host)?),
             Self::Simulate(arguments) => Box::new(simulate::simulate(arguments, host)?),
-            Self::Frf(arguments) => Box::new(frf::frf(arguments, host)?),
+            Self::Frf(arguments) => frf::frf(arguments, host)?,
             Self::Budget(arguments) => Box::new(budget::budget(arguments, host)?),
             Self::Design(arguments) => Box::new(design::design(arguments, host)?),
             Self::Batch(arguments) => batch::batch(arguments, host)?,

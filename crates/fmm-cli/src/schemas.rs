@@ -17,12 +17,13 @@ fn schema<T: JsonSchema>(name: &str) -> (String, String) {
     (name.to_owned(), format!("{schema:#}\n"))
 }
 
-fn schemas() -> [(String, String); 12] {
+fn schemas() -> [(String, String); 13] {
     [
         schema::<identify::Content<'_>>("identify-1"),
         schema::<force::Content<'_>>("force-1"),
         schema::<backbone::Content<'_>>("backbone-1"),
         schema::<frf::Content<'_>>("frf-1"),
+        schema::<frf::modes::Content<'_>>("modes-1"),
         schema::<budget::Answers>("budget-1"),
         schema::<scenario::Motion>("simulate-1"),
         schema::<design::Choice>("design-1"),

@@ -1,10 +1,12 @@
 //! The frequency response of an impact test: `fmm frf FILES...`.
 //!
 //! Each file is one trial with a channel of force and one of the response. Gives out the impulses, the resonances with
-//! frequency, damping and coherence, and what is doubtful, or all lines of H1, H2 and coherence.
+//! frequency, damping and coherence, and what is doubtful, or all lines of H1, H2 and coherence. With `--modes`, all
+//! modes are fitted at once, to these trials or to responses that were measured already.
 
 mod analysis;
 mod figures;
+pub(crate) mod modes;
 #[cfg(test)]
 mod tests;
 mod trials;
@@ -38,6 +40,8 @@ pub(crate) struct Arguments {
     /// Value of an exponential window at the end of the record
     #[arg(long, value_name = "FRACTION", default_value_t = 0.01)]
     exponential_end: f64,
+    #[command(flatten)]
+    modes: modes::Choices,
     #[command(flatten)]
     pub(crate) output: Output,
 }
@@ -213,7 +217,20 @@ pub(crate) struct Found {
     analysis: Analysis,
 }
 
-pub(crate) fn frf(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+pub(crate) fn frf(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn Answer>, Box<dyn Error>> {
+    if !arguments.modes.are_wanted() {
+        return Ok(Box::new(found(arguments, host)?));
+    }
+    let (files, choice) = (&arguments.files, &arguments.channels);
+    let measured = arguments.modes.measured(files, choice, host)?;
+    let measured = match measured {
+        Some(measured) => measured,
+        None => modes::Measured::of(&found(arguments, host)?)?,
+    };
+    Ok(Box::new(arguments.modes.fit(measured, host)?))
+}
+
+fn found(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     let read = |path: &PathBuf| arguments.channels.read(path, host).map_err(named(path));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
     let form = form(&trials)?;

@@ -213,7 +213,7 @@ impl Choice {
                 }
                 _ => return self.with_remedy(error),
             };
-            Remedied { error, remedy: remedy.to_owned() }.into()
+            Remedied::new(error, remedy).into()
         })?;
         Ok((reading, file))
     }
@@ -255,7 +255,7 @@ impl Choice {
             RecordError::Contradiction { .. } => "name another channel".to_owned(),
             _ => "write the unit into the name of the channel, as in \"base [m/s^2]\"".to_owned(),
         };
-        Remedied { error, remedy }.into()
+        Remedied::new(error, remedy).into()
     }
 }
 
