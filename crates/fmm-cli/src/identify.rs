@@ -4,6 +4,7 @@
 //! out findings, their uncertainties, and the limits of the record. The quantity of a channel follows from its unit, a
 //! word in its name, or options; a guess is refused.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -139,6 +140,10 @@ pub(crate) struct Content<'a> {
     origin: &'a str,
     /// Faults of the file.
     remarks: &'a [String],
+    /// What was declared of the machine: value and standard uncertainty of `mass` (kg), `stiffness` (N/m), `damping` (N
+    /// s/m) and `normal_load` (N).
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    declared: &'a BTreeMap<String, (f64, f64)>,
     #[serde(flatten)]
     comparison: &'a Comparison,
     /// Friction over the speed, no law assumed; of `identify` alone.
@@ -198,6 +203,7 @@ impl Answer for Found {
         let content = Content {
             origin: &self.origin,
             remarks: &self.remarks,
+            declared: &self.declared,
             comparison: &self.comparison,
             friction_curve: self.curve.as_ref(),
             posterior: self.posterior.as_ref(),
@@ -272,26 +278,30 @@ fn found(
     for given in &all {
         let input = given.read_mode(host)?;
         let preparation = given.preparation().gain_uncertainty(arguments.question.scale_u);
-        let named = |error: Box<dyn Error>| match &given.file {
-            Some(file) if all.len() > 1 => format!("{}: {error}", file.display()).into(),
-            _ => error,
+        let named = |error: Box<dyn Error>| match all.len() {
+            1 => error,
+            _ => format!("{}: {error}", given.name()).into(),
         };
         decays.push(experiment(arguments, &input.record, &preparation, host).map_err(named)?);
         origins.push(input.origin);
         remarks.extend(input.warnings);
         digests.push(report::digest(&given.bytes(host)?));
     }
-    let questions = arguments.question.under(&arguments.normal_loads, all.len())?;
-    let (question, factors) =
-        Question::together(&questions.into_iter().map(|one| (one, String::new())).collect::<Vec<_>>())?;
-    if factors.iter().any(|factor| *factor != 1.0) {
+    let mut questions = arguments.question.under(&arguments.normal_loads, all.len())?;
+    let mut question = questions.remove(0);
+    if !questions.is_empty() {
+        let named = |(question, given): (Question, &Given)| (question, given.name());
+        let questions: Vec<_> = std::iter::once(question).chain(questions).zip(&all).map(named).collect();
+        let (together, factors) = Question::together(&questions)?;
         let loaded = decays.into_iter().zip(&factors).map(|(decay, factor)| decay.with_load_factor(*factor));
         decays = loaded.collect::<Result<_, _>>()?;
+        question = together;
     }
     let comparison = fitted(&question, &decays, candidates, host)?;
     Ok(Found {
         origin: origins.join("\n"),
         remarks,
+        declared: question.declared().collect(),
         decays,
         comparison,
         curve: None,

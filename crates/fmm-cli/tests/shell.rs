@@ -59,15 +59,45 @@ fn several_records_are_fitted_as_one() {
     assert_eq!(document["further_fits"].as_array().map(Vec::len), Some(1));
     let models = document["models"].as_array().unwrap();
     let model = models.iter().find(|model| model["law"] == document["preferred"]).unwrap();
-    let findings = model["findings"].as_array().unwrap();
     for (name, truth, most) in [("slope_force", 35.3, 1.0), ("friction_force", 144.0, 3.0), ("wind", 0.0, 0.04)] {
-        let finding = findings.iter().find(|finding| finding["name"] == name).unwrap();
+        let finding = &model["parameters"][name];
         assert!((finding["value"].as_f64().unwrap() - truth).abs() < most, "{finding}");
     }
     let output = fmm_in(&examples, &format!("compare {runs} --normal-loads 14"));
     let error = String::from_utf8(output.stderr).unwrap();
     assert!(error.contains("--normal-loads has 1 load(s) for 2 record(s)"), "{error}");
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// What one record told is the guess of a plan, by whatever law.
+#[test]
+fn a_plan_is_made_from_a_result() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let file = std::env::temp_dir().join(format!("fmm-result-{}.json", std::process::id()));
+    for (law, machine, aim) in [
+        ("coulomb_viscous", "--mass 10.391 --mass-u 0.005 --normal-load 14", "mu"),
+        ("berger+linear", "--mass 10.391 --normal-load 14", "mu"),
+        ("stribeck", "--stiffness 1982", "sliding_friction_force"),
+        ("coulomb+quadratic", "", "friction_per_mass"),
+    ] {
+        let line = format!("identify data/flexure/run_1.csv --law {law} {machine} --json");
+        std::fs::write(&file, fmm_in(&examples, &line).stdout).unwrap();
+        let output = fmm_in(&examples, &format!("design --from {}", file.display()));
+        let (text, error) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+        assert!(
+            output.status.success() && text.contains(&format!("this record gives {aim} = ")),
+            "{law}: {text}{error}"
+        );
+        // The plan that is printed is one.
+        let plan = text.split_once("[machine]").and_then(|(_, plan)| plan.split_once("this record gives")).unwrap().0;
+        let of_plan = file.with_extension("toml");
+        std::fs::write(&of_plan, format!("[machine]{plan}")).unwrap();
+        let output = fmm_in(&examples, &format!("design {}", of_plan.display()));
+        let planned = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success() && text.ends_with(&planned), "{law}: {planned}");
+        std::fs::remove_file(of_plan).unwrap();
+    }
+    std::fs::remove_file(file).unwrap();
 }
 
 #[test]

@@ -52,7 +52,7 @@ struct Found {
 }
 
 /// Tests of the plan.
-const TESTS: usize = 3;
+pub(super) const TESTS: usize = 3;
 /// Loads and releases that differ by less than this factor are one (1), by judgement.
 const ALIKE: f64 = 1.02;
 
@@ -81,12 +81,7 @@ impl Campaign {
                 ));
             }
         };
-        let (quantity, order) = match first.unit.as_str() {
-            "m" => ("displacement", 0),
-            "m/s" => ("velocity", 1),
-            "m/s²" => ("acceleration", 2),
-            other => return Err(format!("a plan needs records in m, m/s or m/s², and these are in {other}")),
-        };
+        let (quantity, order) = motion(&first.unit)?;
         let mut text = "[machine]\n".to_owned();
         // Writing to a string does not fail.
         let [mass, stiffness] = ["mass", "stiffness"].map(|name| first.declared.get(name).copied());
@@ -148,8 +143,18 @@ fn more(measure: &Quantity) -> String {
     )
 }
 
+/// Quantity of a record in this `unit`, and the order of its derivative of the position.
+pub(super) fn motion(unit: &str) -> Result<(&'static str, i32), String> {
+    match unit {
+        "m" => Ok(("displacement", 0)),
+        "m/s" => Ok(("velocity", 1)),
+        "m/s²" => Ok(("acceleration", 2)),
+        other => Err(format!("a plan needs records in m, m/s or m/s², and these are in {other}")),
+    }
+}
+
 /// A number, with its standard uncertainty if it has one.
-fn amount((value, u): (f64, f64)) -> String {
+pub(super) fn amount((value, u): (f64, f64)) -> String {
     if u > 0.0 { format!("{{ value = {value}, u = {u} }}") } else { value.to_string() }
 }
 

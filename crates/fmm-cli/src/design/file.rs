@@ -45,8 +45,11 @@ struct OfMachine {
 #[serde(deny_unknown_fields)]
 struct Guessed {
     law: String,
-    #[serde(deserialize_with = "numbers")]
+    #[serde(default, deserialize_with = "numbers")]
     values: BTreeMap<String, f64>,
+    /// Values by the names of a fit, in place of those of the law.
+    #[serde(default, deserialize_with = "numbers")]
+    findings: BTreeMap<String, f64>,
     /// Relative standard uncertainty of the values.
     within: Option<f64>,
 }
@@ -167,6 +170,14 @@ impl OfMachine {
 impl Guessed {
     fn guess(&self, machine: &OfMachine) -> Result<Guess, Box<dyn Error>> {
         let candidate = Candidate::named(&self.law)?;
+        if !self.findings.is_empty() {
+            if !self.values.is_empty() {
+                return Err("[guess] has values of the law and findings of a fit: give one of them".into());
+            }
+            let (machine, frequency) = machine.machine()?;
+            let found: Vec<(&str, f64)> = self.findings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+            return self.spread(Guess::of_findings(machine, &candidate, frequency, &found)?);
+        }
         let law = candidate.law_name();
         let entry = laws().into_iter().find(|entry| entry.name == law);
         let slots = entry.map(|entry| (entry.slots)()).ok_or_else(|| format!("{law} cannot be guessed in a file"))?;
@@ -186,7 +197,11 @@ impl Guessed {
             .map(|(key, value)| (key.as_str(), *value))
             .collect();
         let (machine, frequency) = machine.machine()?;
-        let guess = Guess::new(machine, &candidate, frequency, &values, &beside)?;
+        self.spread(Guess::new(machine, &candidate, frequency, &values, &beside)?)
+    }
+
+    /// The `guess` with values that may be off.
+    fn spread(&self, guess: Guess) -> Result<Guess, Box<dyn Error>> {
         let Some(within) = self.within else { return Ok(guess) };
         if !(within > 0.0 && within.is_finite()) {
             let given = Rounded::every_digit(within);

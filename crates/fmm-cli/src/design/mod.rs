@@ -7,6 +7,7 @@ mod campaign;
 mod candidates;
 mod figures;
 mod file;
+mod result;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -15,7 +16,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Detail, Document};
 use crate::host::Host;
@@ -29,9 +30,10 @@ pub(crate) struct Arguments {
     /// The plan, as TOML or, by its ending, as JSON
     #[arg(required_unless_present = "from")]
     file: Option<PathBuf>,
-    /// Make the plan from the document of a campaign, campaign.json of `fmm batch --out`: its machine, friction and
-    /// noise, with tests at its loads and releases. It is printed, to be changed and given as a file
-    #[arg(long, value_name = "campaign.json", conflicts_with = "file")]
+    /// Make the plan from a document: of one record, by `fmm identify --json`, or of a campaign, campaign.json of `fmm
+    /// batch --out`. It takes its machine, friction and noise, with tests at its loads and releases, and is printed, to
+    /// be changed and given as a file
+    #[arg(long, value_name = "result.json|campaign.json", conflicts_with = "file")]
     from: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) output: Output,
@@ -90,14 +92,33 @@ pub(crate) fn design(arguments: &Arguments, host: &Host<'_>) -> Result<Choice, B
         if let Some(path) = &arguments.file {
             return host.document(path, |file| answer(Wanted::of(file)?));
         }
-        let path =
-            arguments.from.as_deref().ok_or("give the file of a plan, or --from with the document of a campaign")?;
-        host.document(path, |campaign: Campaign| {
-            let (plan, more) = campaign.plan()?;
+        let path = arguments
+            .from
+            .as_deref()
+            .ok_or("give the file of a plan, or --from with the document of a record or a campaign")?;
+        host.document(path, |from: From| {
+            let (plan, more) = from.plan()?;
             let answer = answer(Wanted::of(toml::from_str(&plan)?)?)?;
             Ok(Choice { told: Some([plan, more]), ..answer })
         })
     })?
+}
+
+/// Document of which a plan is made.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum From {
+    Campaign(Campaign),
+    Record(result::Found),
+}
+
+impl From {
+    fn plan(&self) -> Result<(String, String), String> {
+        match self {
+            Self::Campaign(campaign) => campaign.plan(),
+            Self::Record(found) => found.plan(),
+        }
+    }
 }
 
 impl Answer for Choice {
@@ -117,10 +138,10 @@ impl Answer for Choice {
     }
 }
 
-/// The plan that follows from the document of a campaign, after it was carried out, and what more records would tell.
+/// The plan that follows from the document of a record or a campaign, after it was carried out, and what more records would tell.
 #[cfg(test)]
-pub(crate) fn of_campaign(document: &str) -> Result<(String, String), Box<dyn Error>> {
-    let told = serde_json::from_str::<Campaign>(document)?.plan()?;
+pub(crate) fn of_document(document: &str) -> Result<(String, String), Box<dyn Error>> {
+    let told = serde_json::from_str::<From>(document)?.plan()?;
     answer(Wanted::of_toml(&told.0)?)?;
     Ok(told)
 }

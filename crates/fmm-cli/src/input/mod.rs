@@ -81,6 +81,11 @@ impl Given {
         self.choice.to.map_or(from, |to| from.to(to)).clock_uncertainty(self.choice.rate_u)
     }
 
+    /// The file, in words.
+    pub(crate) fn name(&self) -> String {
+        self.file.as_ref().map_or_else(|| "the bundled record".to_owned(), |file| file.display().to_string())
+    }
+
     /// The bytes of the file.
     pub(crate) fn bytes(&self, host: &Host<'_>) -> Result<Cow<'static, [u8]>, Box<dyn Error>> {
         Ok(match &self.file {

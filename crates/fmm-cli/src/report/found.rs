@@ -1,5 +1,6 @@
 //! Content of a report: a record, as it was prepared and fitted, and its pictures.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 
 use fmm_identify::{Comparison, Experiment, Finding, FrictionCurve, FrictionLevel};
@@ -37,6 +38,8 @@ pub(crate) struct Found {
     pub(crate) origin: String,
     /// Faults of the file.
     pub(crate) remarks: Vec<String>,
+    /// What was declared of the machine, by name: value and standard uncertainty.
+    pub(crate) declared: BTreeMap<String, (f64, f64)>,
     /// The record, and those that are fitted with it.
     pub(crate) decays: Vec<Experiment>,
     pub(crate) comparison: Comparison,

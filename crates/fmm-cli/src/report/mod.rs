@@ -241,6 +241,7 @@ mod tests {
             curve: None,
             posterior: None,
             remarks: Vec::new(),
+            declared: std::collections::BTreeMap::new(),
             failure: None,
             command: "fmm identify <script>.csv".to_owned(),
             sha256: digest(b"abc"),

@@ -11,7 +11,7 @@ use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::identification::Identification;
 use crate::law::dimension::is_force;
-use crate::law::naming::Units;
+use crate::law::naming::{Form, Units};
 use crate::machine::Machine;
 use crate::machine::Scale;
 
@@ -131,6 +131,57 @@ impl Guess {
             _ => *value,
         }));
         Self::of(machine, model, Unit::of("m"), values)
+    }
+
+    /// A `candidate` law on `machine`, which vibrates at `frequency` (Hz) without friction, with values by the names that
+    /// a fit gives them, per mass: `friction_per_mass`, `damping_per_mass`. A static level of its own that is not among
+    /// them is the sliding one.
+    ///
+    /// ```
+    /// use fmm_identify::{Candidate, Guess, Machine};
+    ///
+    /// let found = [("friction_per_mass", 0.34), ("damping_per_mass", 0.03)];
+    /// let guess = Guess::of_findings(Machine::per_unit_mass(), &Candidate::named("coulomb + linear")?, 2.2, &found)?;
+    /// assert_eq!(guess.value("damping_per_mass"), Some(0.03));
+    /// # Ok::<(), fmm_identify::IdentifyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`IdentifyError::Missing`] and [`IdentifyError::UnknownName`] for values that are missing or belong to nothing,
+    /// [`IdentifyError::OutOfRange`] for those outside their bounds.
+    pub fn of_findings(
+        machine: Machine,
+        candidate: &Candidate,
+        frequency: f64,
+        found: &[(&str, f64)],
+    ) -> Result<Self, IdentifyError> {
+        ModelError::require_positive("natural frequency", frequency, "Hz")?;
+        let (model, position) = (candidate.with_breakaway(), Unit::of("m"));
+        let (_, parameters) = local::layout(&model, &machine, &position, frequency)?;
+        let names = || parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ");
+        if let Some((name, _)) = found.iter().find(|(name, _)| parameters.iter().all(|one| one.name() != *name)) {
+            let what =
+                format!("{} has no parameter called {name:?}; its parameters are: {}", candidate.name(), names());
+            return Err(IdentifyError::UnknownName { what });
+        }
+        let units = Units::new("m", "N");
+        let is_breakaway = |name: &str| {
+            let mut own = model.law.parameters.iter().filter(|parameter| parameter.role() == Role::Breakaway);
+            own.any(|parameter| units.fitted(parameter, Form::PerMass).name() == name)
+        };
+        let value = |parameter: &Parameter| match found.iter().find(|(name, _)| *name == parameter.name()) {
+            Some((_, value)) => Ok(*value),
+            None if parameter.name() == "natural_frequency_hz" => Ok(frequency),
+            None if parameter.bounds().is_fixed() => Ok(parameter.bounds().lower()),
+            None if is_breakaway(parameter.name()) => Ok(0.0),
+            None => Err(IdentifyError::missing(format!(
+                "{} has no value for {}: give one",
+                candidate.name(),
+                parameter.name()
+            ))),
+        };
+        let values = parameters.iter().map(value).collect::<Result<Vec<f64>, _>>()?;
+        Self::of(machine, model, position, values)
     }
 
     /// Result of a pilot experiment: values, their uncertainty, and the information of its `records`, which must be

@@ -102,14 +102,14 @@ fn the_next_tests_follow_from_a_campaign() {
     let campaign = Campaign::of_manifest(&toml, law(), None, &Host::default()).unwrap();
     let rows = rows(&campaign);
     let document = table::document(&rows, &Summary::of(&campaign, &rows, &NOTHING, None)).unwrap();
-    let (plan, more) = crate::design::of_campaign(&document).unwrap();
+    let (plan, more) = crate::design::of_document(&document).unwrap();
     assert!(plan.contains("mass = { value = 10, u = 0.01 }") && plan.contains("normal_load = [2, 4, 8]"), "{plan}");
     assert!(plan.contains("law = \"coulomb + linear\"") && plan.contains("aim = \"mu\""), "{plan}");
     assert!(more.starts_with("the consensus of mu has u = ") && more.contains("by 6 records; 3 more"), "{more}");
     // Mass and stiffness tell the frequency: a plan with all three would be refused.
     assert!(plan.contains("\nfrequency = ") && !plan.contains("stiffness"), "{plan}");
     let stiff = document.replace("\"mass\": [", "\"stiffness\": [2467.4, 1.0], \"mass\": [");
-    let (plan, _) = crate::design::of_campaign(&stiff).unwrap();
+    let (plan, _) = crate::design::of_document(&stiff).unwrap();
     assert!(plan.contains("stiffness = 2467.4\n") && !plan.contains("frequency = "), "{plan}");
 }
 
