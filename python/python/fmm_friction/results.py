@@ -373,14 +373,22 @@ class Budget(Result):
 
     @property
     def findings(self) -> Findings:
-        """Each result with its uncertainty by derivatives and the interval of the trials."""
+        """Each result with its u by derivatives and the interval of the trials; those of a sweep are in :attr:`rows`."""
+        return self._findings(self.document)
 
+    @property
+    def rows(self) -> list[tuple[dict[str, float], Findings]]:
+        """Values of the quantities in each row of a sweep, and its findings."""
+        return [(dict(row["values"]), self._findings(row)) for row in self.document.get("sweep", [])]
+
+    @staticmethod
+    def _findings(row: dict[str, Json]) -> Findings:
         def finding(result: dict[str, Json]) -> Finding:
             budget, interval = result["budget"], result["interval"]
             ends = (interval["low"], interval["high"])
             return Finding(budget["name"], budget["estimate"], budget["standard_uncertainty"], ends, budget["unit"])
 
-        return Findings({result["budget"]["name"]: finding(result) for result in self.document["results"]})
+        return Findings({result["budget"]["name"]: finding(result) for result in row["results"]})
 
 
 class Motion(Result):
