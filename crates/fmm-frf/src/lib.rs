@@ -24,6 +24,7 @@
 //! | noise between impacts, responses longer than the record? | [`ForceWindow`], [`ExponentialWindow`] |
 //! | in which form? | [`FrequencyResponse`]: receptance, mobility, accelerance; delays; bands |
 //! | which modes? | [`FrequencyResponse::resonances`], [`RationalFit`] |
+//! | which modes does a structure have, and which shapes? | `ModalFit` of each `MeasuredResponse` (feature `modes`) |
 //! | which modes does a decay have, and how do frequency and damping depend on the amplitude? | [`decay_modes`], [`Backbone`] and its [`Suggestion`]; [`IsolatedMode`] takes one out |
 //! | how much friction? | [`SingleDegreeOfFreedom::friction_after_impact`], [`CoulombLine`] |
 //! | is it friction at all? | [`FrictionSpectrum`]: odd harmonics, against the linear response of [`SingleDegreeOfFreedom`] |
@@ -64,7 +65,11 @@
 //!
 //! [`fmm-record`](https://docs.rs/fmm-record) reads the two channels; [`fmm-identify`](https://docs.rs/fmm-identify)
 //! fits friction to the impacts themselves, by the complex mobility or in time. The closed forms here are good to about
-//! half a percent and give its start values. There are no features.
+//! half a percent and give its start values.
+//!
+//! # Features
+//!
+//! * `modes`, off by default: many modes at once, by factorisations and eigenvalues of the crate faer.
 
 mod average;
 mod channel;

@@ -12,6 +12,7 @@ mod options;
 mod partial_fractions;
 mod pole;
 mod refinement;
+mod table;
 mod tracks;
 mod universal;
 mod windows;

@@ -8,6 +8,7 @@ use faer::{Mat, MatRef, Side, c64};
 use fmm_record::Complex64;
 
 use super::band::Band;
+use super::table::Table;
 use crate::error::FrfError;
 
 /// Share of the unit circle that the lines cover. Origin: chosen; the gap lets a polynomial join the two ends of the
@@ -44,9 +45,6 @@ pub(super) struct Denominators {
     centre: Complex64,
     period: f64,
 }
-
-/// Positions of the responses in a table of outputs (rows) by references (columns).
-pub(super) type Table = Vec<Vec<usize>>;
 
 impl Denominators {
     /// Of the `lines` of the responses in `table`, up to `order`.

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::band::Band;
 use super::diagram::{StabilisationDiagram, by_frequency};
-use super::normal_equations::{Denominators, Table};
+use super::normal_equations::Denominators;
 use super::pole::Pole;
+use super::table::Table;
 use super::tracks::stable_poles;
 use crate::error::FrfError;
 
@@ -31,7 +32,13 @@ impl Search {
         for Window { lines, counting } in windows(band.len()).iter().rev() {
             let order = order.min((lines.len() / 2).saturating_sub(1));
             let ends = (band.frequencies[counting.start], band.frequencies[counting.end - 1]);
-            let diagram = StabilisationDiagram::of(&Denominators::of(band, lines.clone(), table, order)?, ends);
+            let denominators = match Denominators::of(band, lines.clone(), table, order) {
+                Ok(denominators) => denominators,
+                // Of a part without a signal nothing follows; all lines together have one.
+                Err(_) if lines.len() < band.len() => continue,
+                Err(error) => return Err(error),
+            };
+            let diagram = StabilisationDiagram::of(&denominators, ends);
             let is_new = |pole: &Pole, known: &[Pole]| {
                 let is_it = |other: &Pole| (pole.0 - other.0).norm() < pole.0.re.abs().max(other.0.re.abs());
                 !known.iter().any(is_it)

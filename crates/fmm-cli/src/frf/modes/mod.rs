@@ -109,8 +109,9 @@ fn doubts(measured: &Measured, fit: &ModalFit) -> Vec<String> {
     let mut doubts = Vec::new();
     for (response, misfit) in measured.responses.iter().zip(fit.misfits()).filter(|(_, misfit)| **misfit > MISFIT) {
         let (place, share) = (response.response(), 100.0 * misfit);
+        let which = if place.node == 0 { "the response".to_owned() } else { format!("the response at {place}") };
         doubts.push(format!(
-            "the modes leave {share:.0} % of the response at {place}: a mode may be missing, or the lines are noise"
+            "the modes leave {share:.0} % of {which}: a mode may be missing, or the structure is not linear"
         ));
     }
     if let Some(chi_square) = fit.reduced_chi_square().filter(|square| *square > CHI_SQUARE) {

@@ -31,9 +31,10 @@ impl Measured {
         if let Some(uncertainty) = &analysis.uncertainty {
             measured = measured.with_uncertainty(uncertainty.clone(), count as f64)?;
         }
-        // What is said of peaks is said of single modes.
-        let warnings = found.trials.iter().flat_map(|trial| trial.warnings.clone()).collect();
         let names: Vec<&str> = found.trials.iter().map(|trial| trial.name.as_str()).collect();
+        // What is said of a peak, and not of a trial, is said of the fit of one mode.
+        let of_trial = |warning: &&String| names.iter().any(|name| warning.starts_with(name));
+        let warnings = analysis.warnings.iter().filter(of_trial).cloned().collect();
         let origin = format!("H1 of {}, window {}", names.join(", "), analysis.window);
         Ok(Self { responses: vec![measured], origin, usable: Some(analysis.usable), warnings })
     }
