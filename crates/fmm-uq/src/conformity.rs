@@ -196,7 +196,7 @@ mod tests {
         ToleranceInterval::new(lower, upper).unwrap()
     }
 
-    /// Examples of JCGM 106:2012, 7.4 and 7.5: a Zener diode, a vessel under pressure, an oil.
+    /// Examples of JCGM 106:2012, 7.4 and 7.5, printed figures from memory: a Zener diode, a vessel under pressure, an oil.
     #[test]
     fn probabilities_are_those_of_the_guide() {
         for (tolerance, estimate, u, printed) in [

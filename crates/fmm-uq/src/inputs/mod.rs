@@ -6,6 +6,8 @@ mod observations;
 pub use input::{Evaluation, Input};
 pub use observations::Observations;
 
+use std::collections::HashSet;
+
 use nalgebra::DMatrix;
 
 use crate::error::UncertaintyError;
@@ -77,7 +79,7 @@ impl Inputs {
     /// [`UncertaintyError::Invalid`] for an unknown name, an input with itself, a pair given twice, a coefficient
     /// outside [−1, 1], or coefficients that are impossible together.
     pub fn with_correlations(mut self, coefficients: &[(&str, &str, f64)]) -> Result<Self, UncertaintyError> {
-        let mut seen = Vec::with_capacity(coefficients.len());
+        let mut seen = HashSet::with_capacity(coefficients.len());
         for &(first, second, value) in coefficients {
             let (i, j) = (self.position(first)?, self.position(second)?);
             let pair = (i.min(j), i.max(j));
@@ -85,7 +87,7 @@ impl Inputs {
                 let what = format!("the correlation of `{first}` with itself is 1 and cannot be set");
                 return Err(UncertaintyError::invalid(what));
             }
-            if seen.contains(&pair) {
+            if !seen.insert(pair) {
                 let what = format!("the correlation of `{first}` and `{second}` is given twice");
                 return Err(UncertaintyError::invalid(what));
             }
@@ -93,7 +95,6 @@ impl Inputs {
                 let correlation = format!("correlation of `{first}` and `{second}`");
                 return Err(UncertaintyError::out_of_range(&correlation, value, "in [-1, 1]"));
             }
-            seen.push(pair);
             self.correlation[(i, j)] = value;
             self.correlation[(j, i)] = value;
         }

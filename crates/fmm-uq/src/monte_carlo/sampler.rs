@@ -19,6 +19,8 @@ pub(crate) struct Sampler {
     independent: Vec<Independent>,
     dependent: Vec<Margin>,
     root: Vec<Vec<f64>>,
+    /// Place of the first number of each row of the root that is not zero.
+    begins: Vec<usize>,
     ensembles: Vec<(f64, ChiSquared<f64>)>,
 }
 
@@ -84,7 +86,8 @@ impl Sampler {
         }
         let members: Vec<usize> = dependent.iter().map(|margin| margin.input).collect();
         let root = inputs.correlation_root(&members);
-        Self { width: all.len(), independent, dependent, root, ensembles }
+        let begins = root.iter().map(|row| row.iter().position(|l| *l != 0.0).unwrap_or(0)).collect();
+        Self { width: all.len(), independent, dependent, root, begins, ensembles }
     }
 
     /// Number of inputs.
@@ -124,9 +127,11 @@ impl Sampler {
     /// Writes the dependent inputs of up to [`TOGETHER`] rows. A sum of products waits for each of its terms, those of
     /// several rows do not wait for each other.
     fn combine(&self, scores: &[[f64; TOGETHER]], stretches: &[[f64; TOGETHER]], rows: &mut [f64]) {
-        for ((margin, root), at) in self.dependent.iter().zip(&self.root).zip(1..) {
+        for (place, (margin, root)) in self.dependent.iter().zip(&self.root).enumerate() {
+            // Inputs that are correlated in groups have no part in other groups.
+            let members = self.begins[place]..=place;
             let mut sums = [-0.0; TOGETHER];
-            for (l, scores) in root[..at].iter().zip(scores) {
+            for (l, scores) in root[members.clone()].iter().zip(&scores[members]) {
                 for (sum, score) in sums.iter_mut().zip(scores) {
                     *sum += l * score;
                 }
