@@ -28,7 +28,7 @@ const ROOMS: &[(&str, &str)] = &[
         "math dimension estimate error parameter scalar damping dual flexure restoring oscillator student symbol unit \
          widest",
     ),
-    ("fmm-record", "error numerics sampling units record calculus examination spacing files"),
+    ("fmm-record", "error numerics sampling units record calculus examination spacing growing serialised files"),
     (
         "fmm-sim",
         "error scenario mechanics trajectory automaton dormand_prince exact fixed_step runge_kutta bristle simulate stepper",

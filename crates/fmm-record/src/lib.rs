@@ -59,7 +59,7 @@
 //!
 //! Text and Universal Files are always read. `mat`, on by default, reads MATLAB files of versions 4 to 7, `hdf5` those
 //! of version 7.3, `npy` files of NumPy, `workbook` sheets of spreadsheets, `json` tables in JSON, `wav` sound, and
-//! `gzip` any of them compressed. A file whose reader is not compiled is refused with the name of the feature. Without
+//! `gzip` any of them compressed. `serde` writes and reads records. A file whose reader is not compiled is refused with the name of the feature. Without
 //! these features the crate depends on `fmm-model`, `realfft` and `thiserror` only.
 //!
 //! # Neighbours
@@ -73,9 +73,12 @@ mod calculus;
 mod error;
 mod examination;
 mod files;
+mod growing;
 mod numerics;
 mod record;
 mod sampling;
+#[cfg(feature = "serde")]
+mod serialised;
 mod spacing;
 #[cfg(test)]
 mod tests;
@@ -99,6 +102,7 @@ pub use examination::upsampling::Upsampling;
 pub use files::arrays::Array;
 pub use files::reading::{Column, Reading};
 pub use files::{Channel, DataFile, Format, Reader, open, uff};
+pub use growing::GrowingRecord;
 pub use numerics::spectrum::{RealTransform, Spectrum};
 pub use realfft::num_complex::Complex64;
 pub use record::Record;

@@ -24,6 +24,8 @@ use crate::error::RecordError;
 /// assert!(Quantity::Force.derivative().is_err());
 /// # Ok::<(), fmm_record::RecordError>(())
 /// ```
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Quantity {
