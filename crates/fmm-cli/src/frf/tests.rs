@@ -58,7 +58,7 @@ fn bundled() -> Vec<Trial> {
 }
 
 /// The bytes of an npy file.
-fn npy(shape: &str, values: &[f64]) -> Vec<u8> {
+pub(super) fn npy(shape: &str, values: &[f64]) -> Vec<u8> {
     let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
     let mut file = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
     file.extend(format!("{header:<117}\n").bytes());

@@ -65,11 +65,12 @@ impl Choices {
                 MeasuredResponse::of_universal(&file, known, self.averages).map_err(|error| of_file(path, error))?
             } else {
                 let file = host.open(&choice.layout.reader().rate(1.0), path)?;
-                let names = names(&file)?;
+                let array = array(&file);
+                let names = array.as_ref().map_or_else(|| names(&file), |columns| Ok(unnamed(columns.len())))?;
                 if !self.responses && !MeasuredResponse::is_named_by(&names) {
                     return mixed(path, &responses);
                 }
-                let columns = columns(&file, names.len())?;
+                let columns = array.map_or_else(|| columns(&file, names.len()), Ok)?;
                 let form = choice.quantity.and_then(form).ok_or_else(|| without_form(path))?;
                 let scale = choice.response_scale.unwrap_or(1.0);
                 MeasuredResponse::of_columns(&names, &columns, form, scale, self.averages)
@@ -101,12 +102,29 @@ fn mixed(path: &Path, before: &[MeasuredResponse]) -> Result<Option<Measured>, B
     Err(format!("{}: {what}", path.display()).into())
 }
 
+/// The columns of the only array of a file, if it is one of arrays.
+fn array(file: &DataFile) -> Option<Vec<Vec<f64>>> {
+    let [array] = file.arrays() else { return None };
+    let &[rows, columns] = array.shape() else { return None };
+    let at = |row: usize, column: usize| match file.format() {
+        Format::Numpy => row * columns + column,
+        _ => column * rows + row,
+    };
+    let values = array.values();
+    Some((0..columns).map(|column| (0..rows).map(|row| values[at(row, column)]).collect()).collect())
+}
+
+/// Names of columns that have none.
+fn unnamed(count: usize) -> Vec<String> {
+    (0..count).map(|column| format!("column {column}")).collect()
+}
+
 /// The names of all columns, also of one that a record would take for its time.
 fn names(file: &DataFile) -> Result<Vec<String>, Box<dyn Error>> {
     let channels = file.channels()?;
     match channels.first() {
-        Some(first) if file.format() == Format::Text => Ok(file.channel(Column::Index(first.position))?.columns),
-        _ => Ok(channels.iter().map(|channel| channel.label.name().to_owned()).collect()),
+        Some(first) => Ok(file.channel(Column::Index(first.position))?.columns),
+        None => Ok(Vec::new()),
     }
 }
 

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::answer::{Answer, Detail, Refusal};
 use crate::commands::answer;
+use crate::frf::tests::npy;
 use crate::host::Host;
 
 /// The responses of a chain of six masses, with noise, as another program wrote them.
@@ -84,16 +85,28 @@ fn tables_of_real_and_imaginary_part_and_of_magnitude_and_phase() {
     let parts = table(&document, "frequency [Hz],real,imag", |re, im| (re, im));
     let polar = table(&document, "f (Hz),magnitude,phase [deg]", |re, im| (re.hypot(im), im.atan2(re).to_degrees()));
     let bare = table(&document, "a,b,c", |re, im| (1e3 * re, 1e3 * im));
-    let host = Host::default().with_file("parts.csv", parts).with_file("polar.csv", polar).with_file("bare.csv", bare);
+    let text = String::from_utf8(parts.clone()).unwrap();
+    let numbers: Vec<f64> =
+        text.lines().skip(1).flat_map(|line| line.split(',').map(|cell| cell.parse::<f64>().unwrap())).collect();
+    let array = npy(&format!("({}, 3)", numbers.len() / 3), &numbers);
+    let host = Host::default()
+        .with_file("array.npy", array)
+        .with_file("parts.csv", parts)
+        .with_file("polar.csv", polar)
+        .with_file("bare.csv", bare);
     for words in [
         &["parts.csv", "--quantity", "displacement"][..],
         &["polar.csv", "--quantity", "displacement"],
         &["parts.csv", "polar.csv", "--quantity", "displacement"],
+        &["array.npy", "--responses", "--quantity", "displacement"],
         &["bare.csv", "--responses", "--quantity", "displacement", "--response-scale", "1e-3"],
     ] {
         let again = found(words, &host);
         require_chain(&again);
-        assert_eq!(again["responses"].as_array().unwrap().len(), words.iter().filter(|w| w.ends_with("csv")).count());
+        assert_eq!(
+            again["responses"].as_array().unwrap().len(),
+            words.iter().filter(|word| word.contains('.') && !word.starts_with('-')).count()
+        );
         let residue = |document: &Value| document["modes"][0]["residues"][0]["imag"]["value"].as_f64().unwrap();
         assert!((residue(&again) / residue(&document) - 1.0).abs() < 1e-2, "{words:?}: another size");
     }
