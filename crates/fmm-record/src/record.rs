@@ -157,8 +157,6 @@ impl<'a> From<&'a Record> for Cow<'a, Record> {
 /// # Ok::<(), fmm_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(into = "crate::serialised::Written", try_from = "crate::serialised::Written"))]
 pub struct Record {
     pub(crate) start: f64,
     pub(crate) interval: f64,

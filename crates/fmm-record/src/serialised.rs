@@ -1,6 +1,9 @@
 //! Serialised form of a record, of which only a valid one is made again.
 
-use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::error::RecordError;
 use crate::record::Record;
@@ -9,44 +12,50 @@ use crate::units::Quantity;
 /// Fields of a record as they are written.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Written {
+struct Written<'a> {
     quantity: Quantity,
-    unit: String,
+    unit: Cow<'a, str>,
     /// Time of the first sample (s).
     start_s: f64,
     /// Time between samples (s), the mean one of unequal times.
     interval_s: f64,
     /// Times since the first sample (s), if they are unequally spaced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    elapsed_s: Option<Vec<f64>>,
-    values: Vec<f64>,
+    elapsed_s: Option<Cow<'a, [f64]>>,
+    values: Cow<'a, [f64]>,
 }
 
-impl From<Record> for Written {
-    fn from(record: Record) -> Self {
-        Self {
-            quantity: record.quantity(),
-            unit: record.unit().to_owned(),
-            start_s: record.start(),
-            interval_s: record.interval(),
-            elapsed_s: record.elapsed().map(|elapsed| elapsed.to_vec()),
-            values: record.into_values(),
-        }
+impl Serialize for Record {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let written = Written {
+            quantity: self.quantity(),
+            unit: self.unit().into(),
+            start_s: self.start(),
+            interval_s: self.interval(),
+            elapsed_s: self.elapsed().map(|elapsed| Cow::Borrowed(&elapsed[..])),
+            values: self.values().into(),
+        };
+        written.serialize(serializer)
     }
 }
 
-impl TryFrom<Written> for Record {
-    type Error = RecordError;
+impl<'de> Deserialize<'de> for Record {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Written::deserialize(deserializer)?.record().map_err(D::Error::custom)
+    }
+}
 
-    fn try_from(written: Written) -> Result<Self, RecordError> {
-        let Written { quantity, unit, start_s, interval_s, elapsed_s, values } = written;
-        let mut record = Self::new(start_s, interval_s, values, quantity, unit)?;
-        let Some(elapsed) = elapsed_s else { return Ok(record) };
+impl Written<'_> {
+    /// The record that was written.
+    fn record(self) -> Result<Record, RecordError> {
+        let unit = self.unit.into_owned();
+        let mut record = Record::new(self.start_s, self.interval_s, self.values.into_owned(), self.quantity, unit)?;
+        let Some(elapsed) = self.elapsed_s else { return Ok(record) };
         if elapsed.len() != record.len() {
             let what = format!("{} times were given for {} values", elapsed.len(), record.len());
             return Err(RecordError::time(None, what));
         }
-        if let Some(index) = (1..elapsed.len()).find(|index| !(elapsed[*index] > elapsed[index - 1])) {
+        if let Some(index) = (1..elapsed.len()).find(|index| elapsed[*index] <= elapsed[index - 1]) {
             return Err(RecordError::not_increasing(index, elapsed[index], elapsed[index - 1]));
         }
         if elapsed[0] != 0.0 || elapsed.iter().any(|time| !time.is_finite()) {
@@ -55,7 +64,7 @@ impl TryFrom<Written> for Record {
                 "times since the first sample begin at 0 and are finite".to_owned(),
             ));
         }
-        record.elapsed = Some(elapsed.into());
+        record.elapsed = Some(elapsed.as_ref().into());
         Ok(record)
     }
 }

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use fmm_model::{Estimated, ModelError, Unit};
 use fmm_record::{Quantity, Record, Swings};
 
+use crate::decay::decay_modes::{DecayMode, decay_modes};
 use crate::decay::half_cycles::{FEWEST_HALF_CYCLES, half_cycle_points};
 use crate::decay::local::{Carrier, LocalRegression, LocalVibration};
-use crate::decay::modes::{DecayMode, decay_modes};
 use crate::decay::point::{BackbonePoint, Row};
 use crate::decay::spring::spring_terms;
 use crate::decay::suggestion::{Explanation, Suggestion};
