@@ -373,7 +373,7 @@ class Budget(Result):
 
     @property
     def findings(self) -> Findings:
-        """Each result with its u by derivatives and the interval of the trials; those of a sweep are in :attr:`rows`."""
+        """Results with u by derivatives and the interval of the trials; those of a sweep are in :attr:`rows`."""
         return self._findings(self.document)
 
     @property
