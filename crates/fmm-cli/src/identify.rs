@@ -140,7 +140,7 @@ pub(crate) struct Content<'a> {
     origin: &'a str,
     /// Faults of the file.
     remarks: &'a [String],
-    /// What was declared of the machine: value and standard uncertainty of `mass` (kg), `stiffness` (N/m), `damping` (N
+    /// Declared inputs of the machine: value and standard uncertainty of `mass` (kg), `stiffness` (N/m), `damping` (N
     /// s/m) and `normal_load` (N).
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     declared: &'a BTreeMap<String, (f64, f64)>,

@@ -69,7 +69,7 @@ fn several_records_are_fitted_as_one() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// What one record told is the guess of a plan, by whatever law.
+/// The findings of one record are the guess of a plan, by any law.
 #[test]
 fn a_plan_is_made_from_a_result() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");

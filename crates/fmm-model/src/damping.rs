@@ -126,7 +126,7 @@ impl<D: Scalar> Damping<D> {
     /// c₂ (|v − w| (v − w) + |w| w) in the place of c₂ |v| v
     /// ```
     ///
-    /// What is left out is constant: a force that does not depend on the motion is no damping.
+    /// The part that is left out is constant: a force that does not depend on the motion is no damping.
     ///
     /// ```
     /// use fmm_model::Damping;

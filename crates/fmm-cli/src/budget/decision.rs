@@ -24,7 +24,7 @@ pub(super) struct Tolerance {
     rule: Rule,
 }
 
-/// What a measured value must be to be accepted.
+/// Demand on a measured value that is accepted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Rule {
     /// Within the tolerance.
@@ -35,7 +35,7 @@ enum Rule {
     Risk(f64),
 }
 
-/// Whether a result conforms, how probably, and what follows.
+/// Conformity of a result, its probability, and the decision that follows.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct Conformity {
@@ -54,7 +54,7 @@ pub(super) struct Conformity {
     /// Limits of acceptance (unit of the result); none on a side without one.
     acceptance_lower: Option<f64>,
     acceptance_upper: Option<f64>,
-    /// Whether the estimate lies within the limits of acceptance.
+    /// True if the estimate lies within the limits of acceptance.
     accepted: bool,
     /// Why no value would be accepted.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -130,7 +130,7 @@ impl Tolerance {
 }
 
 impl Conformity {
-    /// Whether the result is accepted.
+    /// True if the result is accepted.
     pub(super) const fn is_accepted(&self) -> bool {
         self.accepted
     }

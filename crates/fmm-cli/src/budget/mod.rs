@@ -69,7 +69,7 @@ struct Stated {
     interval: Interval,
     /// Digits of u, 2 at most, to which the interval by derivatives is that of the trials (JCGM 101:2008, clause 8).
     validated_digits: u32,
-    /// Whether the result keeps its tolerance, if it has one.
+    /// Decision on the tolerance of the result, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     conformity: Option<Conformity>,
 }

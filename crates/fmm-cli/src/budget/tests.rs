@@ -152,7 +152,7 @@ fn input_of(lines: &str) -> fmm_uq::Input {
     Measurement::of_toml(&file).unwrap_or_else(|error| panic!("{lines}: {error}")).inputs.as_slice()[0].clone()
 }
 
-/// What certificates and data sheets state.
+/// Statements of certificates and data sheets.
 #[test]
 fn uncertainties_are_read_as_they_are_stated() {
     for (lines, u, freedom) in [

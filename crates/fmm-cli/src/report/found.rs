@@ -38,7 +38,7 @@ pub(crate) struct Found {
     pub(crate) origin: String,
     /// Faults of the file.
     pub(crate) remarks: Vec<String>,
-    /// What was declared of the machine, by name: value and standard uncertainty.
+    /// Declared inputs of the machine, by name: value and standard uncertainty.
     pub(crate) declared: BTreeMap<String, (f64, f64)>,
     /// The record, and those that are fitted with it.
     pub(crate) decays: Vec<Experiment>,

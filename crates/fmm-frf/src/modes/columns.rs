@@ -129,7 +129,7 @@ fn contents(names: &[impl AsRef<str>]) -> Result<Vec<Content>, FrfError> {
     names.iter().zip(known).map(|(name, known)| known.unwrap_or_else(|| Err(unclear(name.as_ref())))).collect()
 }
 
-/// What a column of this name holds, if the name says it.
+/// Content of a column of this name, if the name says it.
 fn content(name: &str) -> Option<Result<Content, FrfError>> {
     let name = name.trim().to_lowercase();
     let has = |word: &str| name.contains(word);

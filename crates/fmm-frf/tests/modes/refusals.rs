@@ -1,4 +1,4 @@
-//! What cannot be fitted is refused with a reason, and nothing panics.
+//! Refusals of responses that cannot be fitted, each with a reason and without a panic.
 
 use fmm_frf::{Complex64, FrequencyResponse, FrfError, MeasuredResponse, ModalFit, ModalOptions, ResponseForm};
 

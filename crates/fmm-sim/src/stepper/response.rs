@@ -11,7 +11,7 @@ pub(super) struct Linear<D> {
     pub(super) square: D,
 }
 
-/// What a machine at rest does within a time τ after an acceleration from outside that is an impulse, a step or a ramp.
+/// Motion of a machine from rest within a time τ after an acceleration from outside that is an impulse, a step or a ramp.
 ///
 /// ```text
 /// g₁″ + 2a g₁′ + ω₀² g₁ = 0,   g₁(0) = 0,   g₁′(0) = 1,   g₂ = ∫ g₁,   g₃ = ∫ g₂

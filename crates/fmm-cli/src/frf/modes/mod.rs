@@ -104,7 +104,7 @@ fn remedied(error: FrfError, options: &ModalOptions) -> Box<dyn Error> {
     Remedied::new(error, remedy).into()
 }
 
-/// What is doubtful about the fit.
+/// Doubts about the fit.
 fn doubts(measured: &Measured, fit: &ModalFit) -> Vec<String> {
     let mut doubts = Vec::new();
     for (response, misfit) in measured.responses.iter().zip(fit.misfits()).filter(|(_, misfit)| **misfit > MISFIT) {
