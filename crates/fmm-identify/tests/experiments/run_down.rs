@@ -237,6 +237,16 @@ fn a_rotor_ends_at_rest() {
     assert!((torque.uncertainty().unwrap() / 0.05 / 5e-3 - 1.0).abs() < 0.2, "{found}");
 }
 
+/// A speed that stays above zero, such as one that a drive takes over, is no rest that shows the zero of the sensor.
+#[test]
+fn a_speed_that_stays_is_no_rest() {
+    let at = |i: usize| (30.0 - 0.1 * i as f64).max(10.0);
+    let record = Record::sampled(10.0, noisy((0..400).map(at), 0.02, 9), Quantity::Velocity, "m/s").unwrap();
+    let run = experiment(&record);
+    let summary = run.summary();
+    assert!(summary.rest_from.is_none() && summary.held_offset == Some(0.0), "{summary}");
+}
+
 /// Samples at any times are fitted at them.
 #[test]
 fn unequal_times_are_used() {
