@@ -125,7 +125,7 @@ fn killed_and_resumed() {
     println!("rows at each kill: {seen:?}");
     assert!(seen[0] < count && seen.windows(2).all(|pair| pair[0] <= pair[1]));
     assert!(batch(&killed).status().unwrap().success());
-    for name in ["campaign.csv", "campaign.json", "campaign.html"] {
+    for name in ["campaign.csv", "campaign.json", "campaign.html", "campaign.jsonld"] {
         let [first, second] = [&home.join("whole"), &killed].map(|out| std::fs::read(out.join(name)).unwrap());
         assert!(first == second, "{name} differs");
     }
@@ -141,7 +141,9 @@ fn killed_and_resumed() {
 fn a_list_is_split_and_joined() {
     let home = folder("list");
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(3));
-    let mut list = "[common]\nmass = 1\nrate = 200\n[sheet]\ndevice = \"flexure\"\n".to_owned();
+    let mut list = "[common]\nmass = 1\nrate = 200\n[sheet]\ndevice = \"flexure\"\n\
+                    authors = \"A. Author\"\ntitle = \"Six runs\"\nlubricant = \"none\"\n"
+        .to_owned();
     for (run, load) in [3.5, 7.0, 14.0, 3.5, 7.0, 14.0].into_iter().enumerate() {
         let mut text = "v [m/s]\n".to_owned();
         for value in velocity(200.0, 500, 2.0, 0.01 * load, 0.05) {
@@ -162,7 +164,8 @@ fn a_list_is_split_and_joined() {
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     };
     let bytes = |out: &str| {
-        ["campaign.csv", "campaign.json", "campaign.html"].map(|name| std::fs::read(home.join(out).join(name)).unwrap())
+        ["campaign.csv", "campaign.json", "campaign.html", "campaign.jsonld"]
+            .map(|name| std::fs::read(home.join(out).join(name)).unwrap())
     };
     let asked = ["--joint", "--against", "day"];
     done("batch", "whole", &asked);
@@ -175,6 +178,21 @@ fn a_list_is_split_and_joined() {
     let summary = &document["summary"];
     assert_eq!(summary["joint"]["found"]["records"], 6, "{}", summary["joint"]);
     assert_eq!(summary["dependences"][0]["against"], "normal_load");
+    let linked: serde_json::Value = serde_json::from_slice(&bytes("whole")[3]).unwrap();
+    let experiment = &linked["@graph"][0];
+    assert_eq!(experiment["tdo:generatesFile"].as_array().unwrap().len(), 6);
+    assert_eq!(experiment["schema:creator"], "A. Author");
+    let of_first = &experiment["tdo:generatesFile"][0]["tdo:isControlledBy"]["tdo:hasQuantification"];
+    assert_eq!(of_first["tdo:hasRationalNumberValue"], 3.5, "{experiment:#}");
+    assert_eq!(experiment["schema:variableMeasured"][0]["qudt:numericValue"], summary["quantities"][0]["mean"]);
+    assert_eq!(experiment["schema:variableMeasured"][0]["qudt:standardUncertainty"], summary["quantities"][0]["u"]);
+    let text = String::from_utf8(bytes("whole")[3].clone()).unwrap();
+    let known: Vec<&str> = include_str!("data/tribodatafair_terms.txt").lines().collect();
+    for term in text.split("\"tdo:").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(known.contains(&term) || term == "NewtonUnit", "{term} is no term of the ontology");
+    }
+    let page = String::from_utf8(bytes("whole")[2].clone()).unwrap();
+    assert!(page.contains("Cite the data as: A. Author. Six runs."), "{page}");
     let rows = || std::fs::read_dir(home.join("parts/rows")).unwrap();
     let written: Vec<_> = rows().map(|row| row.unwrap().metadata().unwrap().modified().unwrap()).collect();
     std::fs::write(&manifest, list.replace("flexure", "pendulum")).unwrap();

@@ -7,6 +7,7 @@
 mod campaign;
 mod dependence;
 mod joint;
+mod linked;
 mod manifest;
 mod page;
 mod row;
@@ -50,8 +51,8 @@ pub(crate) struct Arguments {
     /// what all share, `group` names a column for --group, and [sheet] holds the fields of a record sheet
     #[arg(long, value_name = "FILE", conflicts_with = "records")]
     manifest: Option<PathBuf>,
-    /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json and
-    /// campaign.html; records that are there already, and whose file and entry did
+    /// Write one file for each record into this folder, and with all of them campaign.csv, campaign.json,
+    /// campaign.html and campaign.jsonld (linked data); records that are there already, and whose file and entry did
     /// not change, are not done again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -256,11 +257,12 @@ fn put_together(folder: &Path, campaign: Campaign, asked: &Asked, host: &Host<'_
     }
     let rows = Row::without_copies(rows.into_iter().flatten().collect());
     let summary = asked.summary(&campaign, &rows, host)?;
-    let written = Some(format!("written: {}", folder.join("campaign.{csv,json,html}").display()));
+    let written = Some(format!("written: {}", folder.join("campaign.{csv,json,jsonld,html}").display()));
     let found = Found { campaign, rows, summary, written };
     for (name, text) in [
         ("campaign.csv", table::csv(&found.campaign, &found.rows)?),
         ("campaign.json", found.document(Detail::Brief)?),
+        ("campaign.jsonld", linked::document(&found.campaign, &found.rows, &found.summary)?),
         ("campaign.html", page::page(&found.campaign, &found.rows, &found.summary)),
     ] {
         files::write(&folder.join(name), &text)?;

@@ -9,7 +9,7 @@ use super::campaign::Campaign;
 use super::dependence::{Dependence, FRICTION, LOAD, Line, number_in};
 use super::manifest::EXCLUDE;
 use super::row::{Outcome, Row, Stated, quantities};
-use super::sheet::Field;
+use super::sheet::{Field, citation};
 use super::summary::{Quantity, Summary};
 use super::table::{
     apart_lines, group_lines, is_main, joint_lines, name, probability, records_line, result_line, statement,
@@ -293,7 +293,8 @@ fn sheet(summary: &Summary) -> String {
     };
     format!(
         "<section><h2>Record sheet</h2>\n<p>What a friction coefficient is handed on with, by the fields of ASTM G115 as far as they are \
-         public.</p>\n{}</section>\n",
+         public.</p>\n{}{}</section>\n",
+        paragraphs(citation(fields).map(|reference| format!("Cite the data as: {reference}."))),
         table("sheet", &["part", "field", "value"], fields.iter().map(row))
     )
 }

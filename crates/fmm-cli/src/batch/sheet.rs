@@ -25,46 +25,59 @@ pub(crate) struct Sheet {
     further: BTreeMap<String, String>,
 }
 
-/// Part, key and words of each field that can be given.
-const FIELDS: &[(&str, &str, &str)] = &[
-    ("Test", "laboratory", "laboratory"),
-    ("Test", "operator", "operator"),
-    ("Test", "date", "date"),
-    ("Test", "purpose", "purpose"),
-    ("Device", "device", "test device"),
-    ("Device", "geometry", "geometry of the contact"),
-    ("Device", "contact_area", "contact area or dimensions"),
-    ("Moving specimen", "moving_material", "material"),
-    ("Moving specimen", "moving_composition", "composition"),
-    ("Moving specimen", "moving_treatment", "treatment or coating"),
-    ("Moving specimen", "moving_hardness", "hardness"),
-    ("Moving specimen", "moving_finish", "surface finish"),
-    ("Moving specimen", "moving_roughness", "roughness"),
-    ("Fixed specimen", "fixed_material", "material"),
-    ("Fixed specimen", "fixed_composition", "composition"),
-    ("Fixed specimen", "fixed_treatment", "treatment or coating"),
-    ("Fixed specimen", "fixed_hardness", "hardness"),
-    ("Fixed specimen", "fixed_finish", "surface finish"),
-    ("Fixed specimen", "fixed_roughness", "roughness"),
-    ("Conditions", "motion", "type of motion"),
-    ("Conditions", "normal_load", "normal load or pressure"),
-    ("Conditions", "velocity", "sliding velocity"),
-    ("Conditions", "temperature", "temperature"),
-    ("Conditions", "humidity", "relative humidity"),
-    ("Conditions", "atmosphere", "atmosphere"),
-    ("Conditions", "lubricant", "lubricant"),
-    ("Procedure", "cleaning", "cleaning of the specimens"),
-    ("Procedure", "run_in", "run-in"),
-    ("Procedure", "duration", "duration or number of cycles"),
-    ("Measurement", "friction_measurement", "how friction is measured"),
-    ("Measurement", "coefficient", "static or kinetic"),
+/// Part, key, words and term of each field that can be given. Terms are classes of the TriboDataFAIR ontology 0.1.1
+/// (`tdo:`), or properties of a data set of schema.org; empty where neither has one.
+const FIELDS: &[(&str, &str, &str, &str)] = &[
+    ("Test", "laboratory", "laboratory", "tdo:ResearchInstitutionName"),
+    ("Test", "operator", "operator", "tdo:OperatorPersonalIdentifiers"),
+    ("Test", "date", "date", "schema:temporalCoverage"),
+    ("Test", "purpose", "purpose", "schema:description"),
+    ("Device", "device", "test device", "tdo:EquipmentNonSpecificIdentificatoryName"),
+    ("Device", "geometry", "geometry of the contact", "tdo:PrescribedTypeOfTribologicalContact"),
+    ("Device", "contact_area", "contact area or dimensions", ""),
+    ("Moving specimen", "moving_material", "material", "tdo:MaterialName"),
+    ("Moving specimen", "moving_composition", "composition", ""),
+    ("Moving specimen", "moving_treatment", "treatment or coating", ""),
+    ("Moving specimen", "moving_hardness", "hardness", ""),
+    ("Moving specimen", "moving_finish", "surface finish", ""),
+    ("Moving specimen", "moving_roughness", "roughness", ""),
+    ("Fixed specimen", "fixed_material", "material", "tdo:MaterialName"),
+    ("Fixed specimen", "fixed_composition", "composition", ""),
+    ("Fixed specimen", "fixed_treatment", "treatment or coating", ""),
+    ("Fixed specimen", "fixed_hardness", "hardness", ""),
+    ("Fixed specimen", "fixed_finish", "surface finish", ""),
+    ("Fixed specimen", "fixed_roughness", "roughness", ""),
+    ("Conditions", "motion", "type of motion", "tdo:TribologicalMotionType"),
+    ("Conditions", "normal_load", "normal load or pressure", "tdo:NormalLoadSetpoint"),
+    ("Conditions", "velocity", "sliding velocity", ""),
+    ("Conditions", "temperature", "temperature", "tdo:UncontrolledEnvironmentTemperature"),
+    ("Conditions", "humidity", "relative humidity", "tdo:UncontrolledEnvironmentRelativeHumidity"),
+    ("Conditions", "atmosphere", "atmosphere", "tdo:SurroundingMediumType"),
+    ("Conditions", "lubricant", "lubricant", "tdo:InterfacialMediumRelatedName"),
+    ("Procedure", "cleaning", "cleaning of the specimens", "tdo:SpecimenCleaningProcedureType"),
+    ("Procedure", "run_in", "run-in", ""),
+    ("Procedure", "duration", "duration or number of cycles", ""),
+    ("Measurement", "friction_measurement", "how friction is measured", "tdo:MeasuringMethod"),
+    ("Measurement", "coefficient", "static or kinetic", ""),
+    (DATA, "title", "title", "schema:name"),
+    (DATA, "authors", "authors", "schema:creator"),
+    (DATA, "published", "year of publication", "schema:datePublished"),
+    (DATA, "identifier", "DOI or address", "schema:identifier"),
+    (DATA, "licence", "licence", "schema:license"),
 ];
+
+/// The data that the sheet describes, and how they are cited.
+const DATA: &str = "Data";
 
 /// A field of the sheet as it is printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Field {
     pub(crate) part: &'static str,
+    /// Name in a manifest; empty for results.
+    pub(crate) key: String,
+    /// Class or property of linked data; empty where there is none.
+    pub(crate) term: &'static str,
     pub(crate) name: String,
     /// `None` where nothing is known.
     pub(crate) value: Option<String>,
@@ -86,11 +99,11 @@ impl Sheet {
                 DeValue::Table(further) if name == "further" => {
                     sheet.further = cells(text, further)?.into_iter().collect();
                 }
-                _ if FIELDS.iter().any(|(_, field, _)| *field == name) => {
+                _ if FIELDS.iter().any(|(_, field, ..)| *field == name) => {
                     known.insert(key.clone(), value.clone());
                 }
                 _ => {
-                    let fields: Vec<&str> = FIELDS.iter().map(|(_, field, _)| *field).collect();
+                    let fields: Vec<&str> = FIELDS.iter().map(|(_, field, ..)| *field).collect();
                     let what = format!(
                         "`{name}` is no field of a record sheet; put it under [sheet.further], or take one of {}",
                         fields.join(", ")
@@ -105,19 +118,43 @@ impl Sheet {
 
     /// All fields in their order, with what the records that are `counted` of all `rows` themselves say.
     pub(crate) fn fields(&self, rows: &[Row], counted: &[&Row]) -> Vec<Field> {
-        let field = |(part, key, words): &(&'static str, &str, &str)| {
+        let field = |(part, key, words, term): &(&'static str, &str, &str, &'static str)| {
             let given = self.given.get(*key).cloned();
             let found = if given.is_none() { found(key, counted) } else { None };
-            Field { part, name: (*words).to_owned(), is_found: found.is_some(), value: given.or(found) }
+            let (key, name) = ((*key).to_owned(), (*words).to_owned());
+            Field { part, key, term, name, is_found: found.is_some(), value: given.or(found) }
         };
-        let results = results(rows.len(), counted);
-        let results = results.map(|(name, value)| Field { part: RESULTS, name, value: Some(value), is_found: true });
-        let further = self.further.iter().map(|(name, value)| {
-            let value = Some(value.clone()).filter(|value| !value.is_empty());
-            Field { part: FURTHER, name: name.replace('_', " "), value, is_found: false }
+        let results = results(rows.len(), counted).map(|(name, value)| Field {
+            part: RESULTS,
+            key: String::new(),
+            term: "",
+            name,
+            value: Some(value),
+            is_found: true,
+        });
+        let further = self.further.iter().map(|(key, value)| Field {
+            part: FURTHER,
+            key: key.clone(),
+            term: "",
+            name: key.replace('_', " "),
+            value: Some(value.clone()).filter(|value| !value.is_empty()),
+            is_found: false,
         });
         FIELDS.iter().map(field).chain(results).chain(further).collect()
     }
+}
+
+/// Reference to the data in one line, `None` unless their title or authors are given.
+pub(crate) fn citation(fields: &[Field]) -> Option<String> {
+    let value = |key: &str| fields.iter().find(|field| field.part == DATA && field.key == key)?.value.as_deref();
+    let (title, authors) = (value("title"), value("authors"));
+    title.or(authors)?;
+    let year = value("published").map(|year| format!("({year})"));
+    let head: Vec<&str> = authors.into_iter().chain(year.as_deref()).collect();
+    let head = Some(head.join(" ")).filter(|head| !head.is_empty());
+    let licence = value("licence").map(|licence| format!("Licence {licence}"));
+    let parts = [head.as_deref(), title, value("identifier"), licence.as_deref()];
+    Some(parts.into_iter().flatten().collect::<Vec<_>>().join(". "))
 }
 
 /// Value of a field that follows from the records.

@@ -87,7 +87,8 @@ fn any_split_gives_the_same_bytes() {
             }
         }
         put_together(&out, campaign.clone(), &NOTHING, &Host::default()).unwrap();
-        ["campaign.csv", "campaign.json", "campaign.html"].map(|name| std::fs::read(out.join(name)).unwrap())
+        ["campaign.csv", "campaign.json", "campaign.html", "campaign.jsonld"]
+            .map(|name| std::fs::read(out.join(name)).unwrap())
     };
     let whole = done("whole", &[(1, 1)]);
     assert!(
