@@ -69,7 +69,11 @@
 //!
 //! # Features
 //!
-//! * `modes`, off by default: many modes at once, by factorisations and eigenvalues of the crate faer.
+//! Both are off by default.
+//!
+//! * `modes`: many modes at once, by factorisations and eigenvalues of the crate faer.
+//! * `serde`: responses and oscillators are written and read, and checked as their constructors do; modes and resonances
+//!   are written.
 
 mod average;
 mod channel;
@@ -81,6 +85,8 @@ mod modal;
 #[cfg(feature = "modes")]
 mod modes;
 mod response;
+#[cfg(feature = "serde")]
+mod serialised;
 
 pub use average::{AverageOptions, Coherence, Estimator, ExponentialWindow, ForceWindow, Taper, TrialAverage};
 pub use channel::{Baseline, Channel};

@@ -18,6 +18,7 @@ use crate::math;
 /// assert_eq!(friction.to_string(), "0.02992 ± 0.00061");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimated {
     /// The estimate.
     pub value: f64,

@@ -10,6 +10,7 @@ use super::pole::Pole;
 
 /// A mode with its uncertainties.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Mode {
     /// λ, the pole.
@@ -29,9 +30,11 @@ pub struct Mode {
 
 /// Residue of a pole in one response.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Residue {
     /// A, of the receptance whatever the form of the response (m/(N s)).
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialised::pair"))]
     pub value: Complex64,
     /// Standard uncertainty of its real part (m/(N s)).
     pub real_uncertainty: f64,
@@ -43,6 +46,7 @@ pub struct Residue {
 
 /// A place of a structure, and how far it moves in a mode.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ShapePoint {
     /// Place and direction.

@@ -6,7 +6,8 @@ use fmm_record::Complex64;
 
 /// A pole λ = −ζω₀ + iω₀√(1 − ζ²), of the pair that a mode has the one of positive frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pole(pub(super) Complex64);
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Pole(#[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialised::pair"))] pub(super) Complex64);
 
 impl Pole {
     /// λ (rad/s).

@@ -19,6 +19,7 @@ use crate::error::FrfError;
 /// The time dependence is e^{+iωt} with ω = 2π f, as a discrete Fourier transform with e^{−iωt} gives it. A passive
 /// machine then has Im H < 0 and Re(iω H) > 0 for f > 0; conjugate a response of the other convention first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum ResponseForm {
     /// Displacement by force (m/N).
     Receptance,

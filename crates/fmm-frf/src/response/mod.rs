@@ -83,6 +83,12 @@ impl FrequencyResponse {
         Self { form, frequencies: frequencies.into(), values, decay_rate }
     }
 
+    /// The same behind an exponential window of this decay rate (1/s).
+    #[cfg(feature = "serde")]
+    pub(crate) fn behind_window(self, decay_rate: f64) -> Self {
+        Self { decay_rate, ..self }
+    }
+
     /// Form of all values.
     pub fn form(&self) -> ResponseForm {
         self.form

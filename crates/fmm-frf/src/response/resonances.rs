@@ -4,6 +4,7 @@ use crate::response::FrequencyResponse;
 
 /// A local maximum of the magnitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Resonance {
     /// Frequency (Hz) of the line.

@@ -37,6 +37,7 @@ pub struct Header {
 
 /// A point of a structure and a direction there.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Freedom {
     /// Name of the part, of 10 characters at most.
     pub entity: String,
