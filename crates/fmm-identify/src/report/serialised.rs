@@ -153,7 +153,8 @@ struct RecordDocument<'a> {
     half_swings: usize,
     first_amplitude: f64,
     last_amplitude: f64,
-    frequency_hz: f64,
+    /// `None` for a run-down.
+    frequency_hz: Option<f64>,
     /// Standard deviation.
     noise: f64,
     /// Step between two values, if it is seen.
@@ -196,7 +197,7 @@ impl<'a> RecordDocument<'a> {
             half_swings: record.half_swings,
             first_amplitude: record.amplitudes.0,
             last_amplitude: record.amplitudes.1,
-            frequency_hz: record.frequency,
+            frequency_hz: (!record.is_run_down).then_some(record.frequency),
             noise: record.noise,
             resolution: record.resolution,
             rest_from_s: record.rest_from,
