@@ -281,22 +281,25 @@ impl Run<'_, '_> {
         Ok(found)
     }
 
-    /// Options of a fit that is compared with others.
-    fn limited(&self, most: usize) -> Options {
+    /// Options of a fit that is compared with others, beside the noise that the residuals `found` so far show.
+    fn limited(&self, found: &Found, most: usize) -> Options {
         let rows: usize = self.decays.iter().map(Experiment::rows).sum();
-        let options = self.inquiry.options.clone().with_cost_tolerance(ENOUGH_TO_JUDGE / rows as f64);
+        // Of residuals that are alike over a time, so many are one independent one.
+        let time = found.preferred().map_or(1.0, |preferred| preferred.structure.autocorrelation_time).max(1.0);
+        let options = self.inquiry.options.clone().with_cost_tolerance(ENOUGH_TO_JUDGE * time / rows as f64);
         let most = most.min(options.max_iterations());
         options.with_polish_steps(0).with_restarts(0).with_max_iterations(most)
     }
 
     /// Fits the laws again that a special case fits better.
     fn follow_special_cases(&self, found: &mut Found) {
-        let options = self.limited(MOST_ITERATIONS_OF_CHANGE);
+        let options = self.limited(found, MOST_ITERATIONS_OF_CHANGE);
         let Found { candidates, identifications, .. } = found;
         self.inquiry.follow_special_cases(candidates, identifications, self.decays.into(), &options, self.end);
     }
 
-    /// Follows the preferred law to its end: fits of a search end where their misfits are known well enough.
+    /// Follows the preferred law to its end: fits of a search end where their misfits are known well enough. One that
+    /// creeps is left where it is, as the records hardly tell its parameters.
     fn finish(&self, found: &mut Found) {
         let Some(judgement) = Judgement::of(&found.candidates, &found.identifications) else { return };
         if is_past(self.end) {
@@ -304,7 +307,8 @@ impl Run<'_, '_> {
         }
         let place = judgement.preferred;
         let begin = Begin::Extended(&found.identifications[place].fitted);
-        let end = self.inquiry.fit(&found.candidates[place], self.decays.into(), begin, self.options, self.end);
+        let options = self.options.clone().with_max_iterations(self.options.max_iterations().min(MOST_ITERATIONS));
+        let end = self.inquiry.fit(&found.candidates[place], self.decays.into(), begin, &options, self.end);
         if let Ok(end) = end {
             let own = &mut found.identifications[place];
             if end.fit().outcome().is_success() && end.fit().sum_of_squares() <= own.fit().sum_of_squares() {
@@ -317,7 +321,7 @@ impl Run<'_, '_> {
     /// friction where the records ask for these whatever the friction; then, where more is asked for, by laws with
     /// presliding. A simple law `changes` if its friction changes during the records.
     fn fit_further(&self, found: &mut Found, tests: &mut Vec<ScoreTest>, changes: bool) -> Result<(), IdentifyError> {
-        let (of_speed, of_state) = (self.limited(MOST_ITERATIONS), self.limited(MOST_ITERATIONS_WITH_STATE));
+        let [of_speed, of_state] = [MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE].map(|most| self.limited(found, most));
         // A contact that yields is a spring that softens: it may be what another spring explains as well.
         let preslides_alone = self.shows_presliding(tests);
         let few = thinned(self.decays);
