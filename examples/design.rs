@@ -2,7 +2,7 @@
 //! `cargo run --release --example design -- [--refits 1000]`.
 //!
 //! Every refit is one of records with fresh noise, begun at the truth, by the joint problem of the library. What it
-//! showed is in docs/testing.md. The time that a plan takes for each candidate is printed as well.
+//! showed is in docs/study.md. The time that a plan takes for each candidate is printed as well.
 
 use std::error::Error;
 use std::f64::consts::TAU;

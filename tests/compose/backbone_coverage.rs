@@ -1,6 +1,6 @@
 //! Coverage of a backbone over random machines: points within their uncertainties, terms and springs that are there.
 //!
-//! The figures in `docs/testing.md` are those of these seeds; the uncertainties were set on others.
+//! The figures in `docs/study.md` are those of these seeds; the uncertainties were set on others.
 
 use std::f64::consts::{PI, TAU};
 

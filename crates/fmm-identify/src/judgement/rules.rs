@@ -1,7 +1,7 @@
 //! Rules of the judgement: every number that decides something, with its unit and its origin.
 //!
 //! "Chosen" means that there is no derivation: the number was chosen on simulated records, and the study of
-//! `docs/testing.md` measures the judgement as a whole.
+//! `docs/study.md` measures the judgement as a whole.
 
 /// p below which a law is excluded (1). Origin: chosen so that the true law is excluded in no more than one record of a
 /// hundred, as the best of several others is a little better than one other.

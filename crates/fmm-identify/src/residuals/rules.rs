@@ -1,7 +1,7 @@
 //! Rules of the residuals: every number that decides something, with its unit and its origin.
 //!
 //! Numbers without another origin have no derivation: they were chosen on simulated records, and the study of
-//! `docs/testing.md` measures their effect as a whole.
+//! `docs/study.md` measures their effect as a whole.
 
 /// Rounding of doubles over the amplitude of a record without noise (1). Origin: chosen, far above
 /// the rounding of a simulation (1e-12) and far below any noise.
