@@ -1,4 +1,4 @@
-//! How far the default judgement is to be trusted: `cargo run --release --example judgement`.
+//! Trust in the default judgement, measured: `cargo run --release --example judgement`.
 //!
 //! Ring-downs of known truth are simulated, measured with what real measurements suffer from, and judged as the crates
 //! judge them when nothing is asked for. One row a cell says how often the stated intervals hold the truth, how often a

@@ -1,4 +1,4 @@
-//! What a posterior costs, and whether it is right: effective draws a second, and ranks of true values over simulated
+//! Cost and calibration of a posterior: effective draws a second, and ranks of true values over simulated
 //! ring-downs.
 //!
 //! `cargo run --release --example posterior -- [RECORDS]`; the times are of one thread.

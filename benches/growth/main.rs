@@ -1,4 +1,4 @@
-//! What a call costs as samples, half swings, derivatives, parameters and inputs grow: the tables of
+//! Cost of a call as samples, half swings, derivatives, parameters and inputs grow: the tables of
 //! docs/performance.md.
 //!
 //! `cargo bench --bench growth` prints rows of the least time of many calls;

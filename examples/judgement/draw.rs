@@ -1,4 +1,4 @@
-//! Machines at random.
+//! Random machines.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! What a measurement adds to a motion.
+//! Noise and disturbances that a measurement adds to a motion.
 
 use std::f64::consts::TAU;
 

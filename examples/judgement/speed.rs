@@ -1,4 +1,4 @@
-//! What a fit by a law of many shapes costs, and whether it ends in the lowest minimum.
+//! Cost of a fit by a law of many shapes, and whether it ends in the lowest minimum.
 //!
 //! Records of known truth are fitted as the crates do when nothing is asked for, and once more from the truth.
 

@@ -1,4 +1,4 @@
-//! What the outcomes of one cell come to.
+//! Summary of the outcomes of one cell.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a free vibration cannot tell.
+//! Limits of a free vibration.
 
 use fmm_friction::{Coulomb, CoulombStatic, CoulombViscous, Viscous};
 use fmm_identify::{Experiment, Identification, Known, Machine, Offset, Preparation, Warning, identify};

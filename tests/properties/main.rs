@@ -1,4 +1,4 @@
-//! What must hold for every machine: laws of mechanics and of arithmetic on random parameters, with fixed seeds.
+//! Properties of every machine: laws of mechanics and of arithmetic on random parameters, with fixed seeds.
 
 mod case;
 mod catalogue;

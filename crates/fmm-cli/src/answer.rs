@@ -1,4 +1,4 @@
-//! What a command found, in every form in which it is given out, and why it was refused.
+//! Answer of a command in every form in which it is given out, or the reason of its refusal.
 
 use std::error::Error;
 
@@ -23,19 +23,19 @@ pub trait Answer: Send + Sync {
     /// Screen of text.
     ///
     /// # Errors
-    /// What keeps it from being written.
+    /// Reason why it cannot be written.
     fn text(&self) -> Result<String, Box<dyn Error>>;
 
     /// Document of JSON with the keys `schema` and `version`.
     ///
     /// # Errors
-    /// What keeps it from being written.
+    /// Reason why it cannot be written.
     fn document(&self, detail: Detail) -> Result<String, Box<dyn Error>>;
 
     /// Figures: name of the file and SVG.
     ///
     /// # Errors
-    /// What keeps them from being drawn.
+    /// Reason why they cannot be drawn.
     fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
         Ok(Vec::new())
     }
@@ -43,7 +43,7 @@ pub trait Answer: Send + Sync {
     /// Page of HTML; `None` for a command without one.
     ///
     /// # Errors
-    /// What keeps it from being made.
+    /// Reason why it cannot be made.
     fn page(&self) -> Result<Option<String>, Box<dyn Error>> {
         Ok(None)
     }
@@ -102,9 +102,9 @@ pub struct Refusal {
     /// Kind of the refusal, to act on: `usage`, `unreadable`, `unclear`, `contradiction`, `channel`, `time`, `values`,
     /// `record`, `name`, `fit` or `refused`.
     pub code: &'static str,
-    /// What is wrong, in one sentence.
+    /// Fault, in one sentence.
     pub message: String,
-    /// What would be right, if it is known apart from the message.
+    /// Remedy, if it is known apart from the message.
     pub remedy: Option<String>,
 }
 

@@ -22,7 +22,8 @@ struct Program {
     command: Command,
 }
 
-const AFTER_HELP: &str = "Begin with `fmm identify`, which takes a bundled record. Exit codes: 0 found, 1 refused or failed, 2 wrong usage. Results go to standard output, everything else to \
+const AFTER_HELP: &str = "Begin with `fmm identify`, which takes a bundled record. Exit codes: 0 found, 1 refused or \
+                          failed, 2 wrong usage. Results go to standard output, everything else to \
                           standard error. `fmm COMMAND --help` explains a command.";
 
 #[derive(Debug, Subcommand)]
@@ -133,7 +134,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> ExitCode
 /// ```
 ///
 /// # Errors
-/// What is wrong with the arguments or the input, in the words of the program.
+/// Fault of the arguments or of the input, in the words of the program.
 pub fn answer(
     arguments: impl IntoIterator<Item = impl Into<OsString>>,
     host: &Host<'_>,
@@ -156,7 +157,7 @@ fn line(arguments: &[OsString]) -> String {
 }
 
 impl Command {
-    /// What a command finds; `None` for one that writes by itself. `line` is what was typed.
+    /// Answer of a command; `None` for one that writes by itself. `line` is what was typed.
     fn answer(&self, line: &str, host: &Host<'_>) -> Result<Option<Box<dyn Answer>>, Box<dyn Error>> {
         Ok(Some(match self {
             Self::Identify(arguments) => Box::new(identify::identify(arguments, line, host)?),

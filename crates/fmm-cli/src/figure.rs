@@ -19,7 +19,7 @@ const RESIDUAL: &str = "#1d2a44";
 const WIDTH: f64 = 900.0;
 /// Points drawn per horizontal pixel at most; more cannot be seen.
 const COLUMNS: usize = 1200;
-/// Share of an axis left free above the data at least, where the legend goes.
+/// Smallest share of an axis that is left free above the data, for the legend.
 const HEADROOM: f64 = 0.28;
 /// Height of a line of the legend, and of a panel without its axis (px).
 const LINE: f64 = 20.0;

@@ -79,7 +79,8 @@ impl Answer for Laws {
 const FORMATS: [(&str, &str); 8] = [
     (
         "text",
-        "columns of numbers with or without a header: CSV, TSV, LVM and the like; any separator, decimal points or commas, UTF-8 or UTF-16",
+        "columns of numbers with or without a header: CSV, TSV, LVM and the like; any separator, decimal points or \
+         commas, UTF-8 or UTF-16",
     ),
     ("workbook", "sheets of XLS, XLSX, XLSB, ODS"),
     ("json", "JSON: arrays, lists of rows, one object a line (.json, .jsonl)"),
@@ -114,8 +115,10 @@ impl Answer for Formats {
         let lines: Vec<String> =
             self.formats.iter().map(|Format { name, files }| format!("{name:<10} {files}\n")).collect();
         Ok(format!(
-            "A format is told by what a file begins with, whatever its name; gzip may compress it, and of a ZIP archive the largest file is read.\n\n{}\n\
-             A channel is chosen by its name, its number or its quantity; `fmm identify FILE` says what was found in a file and what must be said.",
+            "A format is told by what a file begins with, whatever its name; gzip may compress it, and of a ZIP \
+             archive the largest file is read.\n\n{}\n\
+             A channel is chosen by its name, its number or its quantity; `fmm identify FILE` says what was found in a \
+             file and what must be said.",
             lines.concat()
         ))
     }

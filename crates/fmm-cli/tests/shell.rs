@@ -1,4 +1,4 @@
-//! What the program is to a shell: codes, documents, completions, manual pages, no colours.
+//! The program in a shell: codes, documents, completions, manual pages, no colours.
 
 use std::io::Write;
 use std::path::Path;

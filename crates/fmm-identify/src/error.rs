@@ -26,7 +26,7 @@ pub enum IdentifyError {
     /// Too few samples, half swings or quiet samples: take a longer record, or ask for less of it.
     #[error("{what}")]
     TooFew {
-        /// Of what there are too few.
+        /// Things of which there are too few.
         what: String,
         /// Number of those that there are.
         found: usize,
@@ -143,8 +143,8 @@ impl IdentifyError {
     /// Too few samples after the first `time` (s), in which a sensor settles.
     pub(crate) fn settling(samples: usize, needed: usize, time: f64) -> Self {
         let what = format!(
-            "the low-pass filter of the sensor settles for {time:.3e} s, after which the record has {samples} samples; at least {needed} are \
-             needed: state a higher corner frequency, or give a longer record"
+            "the low-pass filter of the sensor settles for {time:.3e} s, after which the record has {samples} samples; \
+             at least {needed} are needed: state a higher corner frequency, or give a longer record"
         );
         Self::TooFew { what, found: samples, needed }
     }
@@ -210,8 +210,8 @@ impl IdentifyError {
         let cause = if value.abs() < 1.0 { "the fit leaves nothing of it, or the" } else { "check the" };
         let end = if value.abs() < 1.0 { " are wrong" } else { "" };
         let what = format!(
-            "{name} is {value:.3e} {unit}, of which the variance lies beyond the range of numbers: {cause} units of mass, \
-             stiffness and load{end}"
+            "{name} is {value:.3e} {unit}, of which the variance lies beyond the range of numbers: {cause} units of \
+             mass, stiffness and load{end}"
         );
         Self::OutOfRange { what, value }
     }

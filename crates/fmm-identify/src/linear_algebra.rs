@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 /// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however
 /// alike they are.
 pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
-    /// Of combinations of columns of unit length, those below this square are rounding.
+    /// Square of the length of a combination of unit columns below which it is rounding.
     const ROUNDING: f64 = 1e-10;
     let order = columns.len();
     // An empty matrix has no eigenvalues to ask for.

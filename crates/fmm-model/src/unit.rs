@@ -237,7 +237,7 @@ fn powered(f: &mut Formatter<'_>, symbol: &str, power: f64) -> fmt::Result {
     }
 }
 
-/// A written unit with one sign for each operation, and a space before a power of s that belongs to s alone: `ms-1`.
+/// A written unit with one sign for each operation. `ms-1` becomes `m s-1`, as its power belongs to s alone.
 fn plain(text: &str) -> String {
     let text = text.replace("**", "^").replace(" per ", "/").replace('−', "-").replace(['∕', '⁄'], "/");
     let text = text.replace(['.', '⋅'], " ");

@@ -58,9 +58,8 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
     if usual <= worst && steps.iter().all(|step| *step >= 0.0) && 2 * repeated > steps.len() && steps.len() > 9 {
         let [rate, worst] = [slope(times).recip(), worst].map(in_six_digits);
         let what = format!(
-            "time stamps repeat, {repeated} of {}: they are rounded to {worst} s, more than an interval; \
-             a line through them says about \
-             {rate} Hz; give the rate",
+            "time stamps repeat, {repeated} of {}: they are rounded to {worst} s, more than an interval; a line \
+             through them says about {rate} Hz; give the rate",
             times.len()
         );
         let index = steps.iter().position(|step| *step == 0.0).map(|before| before + 1);
@@ -88,9 +87,8 @@ fn odd_stamp(times: &[f64], tolerance: f64) -> Option<RecordError> {
             Some(RecordError::time(
                 index,
                 format!(
-                    "{what}; missing samples: {missing}, and nothing is put in their place; \
-                     use the record up to {previous} s or \
-                     from {time} s on"
+                    "{what}; missing samples: {missing}, and nothing is put in their place; use the record up to \
+                     {previous} s or from {time} s on"
                 ),
             ))
         }
@@ -123,8 +121,8 @@ fn not_uniform(index: usize, time: f64, expected: f64, interval: f64) -> RecordE
     let [stamp, step, place, deviation] = [time, interval, expected, time - expected].map(in_six_digits);
     let what = format!(
         "sampling is not uniform: time stamp {index} is {stamp} s, but a uniform interval of {step} s puts it at \
-         {place} s ({deviation} s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
-         them first"
+         {place} s ({deviation} s off); give the rate if the samples are uniform and only their stamps are not, or \
+         else resample them first"
     );
     RecordError::time(Some(index), what)
 }
@@ -175,26 +173,26 @@ pub enum Sampling {
         /// The rate (Hz).
         rate: f64,
     },
-    /// From a column or variable of time stamps.
+    /// Sampling from a column or variable of time stamps.
     Times {
         /// Its name.
         name: String,
     },
-    /// From a column of times of day; the record begins at 0 s.
+    /// Sampling from a column of times of day; the record begins at 0 s.
     TimesOfDay {
         /// Its name.
         name: String,
         /// The first of them.
         first: String,
     },
-    /// From a column that counts the days of a calendar; the record begins at 0 s.
+    /// Sampling from a column that counts the days of a calendar; the record begins at 0 s.
     Days {
         /// Its name.
         name: String,
         /// The first of them.
         first: f64,
     },
-    /// From a column that counts the time since 1970 in a part of a second; the record begins at 0 s.
+    /// Sampling from a column that counts the time since 1970 in a part of a second; the record begins at 0 s.
     Epoch {
         /// Its name.
         name: String,
@@ -203,21 +201,21 @@ pub enum Sampling {
         /// The first of its numbers.
         first: f64,
     },
-    /// From a scalar variable in the file that holds the rate (Hz).
+    /// Sampling from a scalar variable in the file that holds the rate (Hz).
     RateVariable {
         /// Its name.
         name: String,
         /// The rate it holds (Hz).
         rate: f64,
     },
-    /// From a scalar variable in the file that holds the interval (s).
+    /// Sampling from a scalar variable in the file that holds the interval (s).
     IntervalVariable {
         /// Its name.
         name: String,
         /// The interval it holds (s).
         interval: f64,
     },
-    /// From the header of the data.
+    /// Sampling from the header of the data.
     Header {
         /// The interval it states (s).
         interval: f64,
@@ -337,9 +335,9 @@ mod tests {
         times[700] += 3e-4 / 7.0;
         assert_eq!(
             uniform_grid(&times).unwrap_err().to_string(),
-            "sampling is not uniform: time stamp 700 is 0.8235 s, but a uniform interval of 0.001 s puts it at 0.823457 s \
-             (0.0000428571 s off); give the rate if the samples are uniform and only their stamps are not, or else resample \
-             them first"
+            "sampling is not uniform: time stamp 700 is 0.8235 s, but a uniform interval of 0.001 s puts it at \
+             0.823457 s (0.0000428571 s off); give the rate if the samples are uniform and only their stamps are not, \
+             or else resample them first"
         );
     }
 

@@ -68,7 +68,8 @@ impl SimulationError {
         }
         let value = position.value();
         let what = format!(
-            "at {} s the position is {} m, where the spring pushes away from the origin: its polynomial does not hold that far out",
+            "at {} s the position is {} m, where the spring pushes away from the origin: its polynomial does not hold \
+             that far out",
             digits(time),
             digits(value)
         );
@@ -87,7 +88,8 @@ impl SimulationError {
     /// No samples, or more than have exact times.
     pub(crate) fn sampling(count: usize, interval: f64) -> Self {
         let what = format!(
-            "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were asked for at {} s",
+            "the number of samples must lie between 1 and 2^53 and their last time be finite, but {count} samples were \
+             asked for at {} s",
             digits(interval)
         );
         Self::OutOfRange { what, value: count as f64 }
@@ -103,7 +105,8 @@ impl SimulationError {
     /// An initial state that the law does not have, or beyond its bound.
     pub(crate) fn deflection(index: usize, deflection: f64, bound: f64) -> Self {
         let what = format!(
-            "state {index} of the law must begin within ±{}, but is {}; a bound of 0 may mean that there is no such state",
+            "state {index} of the law must begin within ±{}, but is {}; a bound of 0 may mean that there is no such \
+             state",
             digits(bound),
             digits(deflection)
         );
@@ -113,7 +116,8 @@ impl SimulationError {
     /// A law with internal state that is not odd in `velocity` (m/s) and state together, as such laws promise to be.
     pub(crate) fn not_odd(velocity: f64) -> Self {
         let what = format!(
-            "the law is not odd: at {} m/s it is not the mirror image of its value at the opposite velocity and state; a contact cannot tell directions apart",
+            "the law is not odd: at {} m/s it is not the mirror image of its value at the opposite velocity and state; \
+             a contact cannot tell directions apart",
             digits(velocity)
         );
         Self::OutOfRange { what, value: velocity }
@@ -122,7 +126,8 @@ impl SimulationError {
     /// The engine has no closed form for this machine, or its normal load.
     pub(crate) fn not_linear(found: &str) -> Self {
         let what = format!(
-            "the exact engine needs linear damping, a linear spring and a constant normal load, but there is {found}; take the Runge-Kutta engine"
+            "the exact engine needs linear damping, a linear spring and a constant normal load, but there is {found}; \
+             take the Runge-Kutta engine"
         );
         Self::NoClosedForm { what }
     }
@@ -130,7 +135,8 @@ impl SimulationError {
     /// A machine that is hardly damped is driven so near its natural frequency that the closed form loses its digits.
     pub(crate) fn resonance(angular_frequency: f64) -> Self {
         let what = format!(
-            "a wave of {} rad/s is too near the resonance of a machine with hardly any damping for the closed form; take the Runge-Kutta engine",
+            "a wave of {} rad/s is too near the resonance of a machine with hardly any damping for the closed form; \
+             take the Runge-Kutta engine",
             digits(angular_frequency)
         );
         Self::NoClosedForm { what }
@@ -140,7 +146,8 @@ impl SimulationError {
     /// digits.
     pub(crate) fn weak_spring(stiffness: f64) -> Self {
         let what = format!(
-            "a spring of {} N/m is too weak for the closed form, which would be a small difference of large numbers; take an engine that integrates",
+            "a spring of {} N/m is too weak for the closed form, which would be a small difference of large numbers; \
+             take an engine that integrates",
             digits(stiffness)
         );
         Self::NoClosedForm { what }
@@ -163,7 +170,8 @@ impl SimulationError {
     /// More steps than any record needs.
     pub(crate) fn step_budget(budget: usize, end: f64) -> Self {
         let what = format!(
-            "the motion takes more than {budget} steps before {} s; shorten the sampled time or ask for less accuracy, neither of which helps where a contact creeps on a law that is steep at rest",
+            "the motion takes more than {budget} steps before {} s; shorten the sampled time or ask for less accuracy, \
+             neither of which helps where a contact creeps on a law that is steep at rest",
             digits(end)
         );
         Self::Exhausted { what }
@@ -172,7 +180,8 @@ impl SimulationError {
     /// More pieces of the integral of the work than are added up.
     pub(crate) fn piece_budget(budget: usize, end: f64) -> Self {
         let what = format!(
-            "the works are added up over more than {budget} pieces before {} s, one at least for each sample and several for each period of a fast wave; sample less often, shorten the sampled time, or take slower waves",
+            "the works are added up over more than {budget} pieces before {} s, one at least for each sample and \
+             several for each period of a fast wave; sample less often, shorten the sampled time, or take slower waves",
             digits(end)
         );
         Self::Exhausted { what }

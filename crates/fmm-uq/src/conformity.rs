@@ -48,7 +48,7 @@ pub struct ToleranceInterval {
 }
 
 impl ToleranceInterval {
-    /// From `lower` to `upper` (unit of the quantity); infinite on a side without a limit.
+    /// Interval from `lower` to `upper` (unit of the quantity); a side without a limit is infinite.
     ///
     /// # Errors
     /// [`UncertaintyError::Invalid`] unless lower < upper and one of them is finite.
@@ -121,7 +121,8 @@ impl ToleranceInterval {
         }
         let [band, width] = [guard_band, self.upper - self.lower].map(Rounded::every_digit);
         Err(UncertaintyError::no_answer(format!(
-            "guard bands of {band} on both sides leave nothing of a tolerance of {width}; measure better or take a smaller band"
+            "guard bands of {band} on both sides leave nothing of a tolerance of {width}; measure better or take a \
+             smaller band"
         )))
     }
 

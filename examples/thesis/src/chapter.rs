@@ -1,4 +1,4 @@
-//! What one chapter of the thesis amounts to: targets, tables, figures, findings.
+//! Result of one chapter of the thesis: targets, tables, figures, findings.
 
 use std::fmt::{self, Write as _};
 

@@ -1,4 +1,4 @@
-//! How much to compute, and whom to tell how far it is.
+//! Settings: the amount of computation, and the receiver of its progress.
 
 /// What a chapter is told before it starts.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! Which law and which engine meet.
+//! Pairs of a law and an engine.
 
 use fmm_friction::{
     AccelerationCoulomb, Berger, BoucWen, BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, ExponentialPair,

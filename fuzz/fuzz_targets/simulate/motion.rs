@@ -1,4 +1,4 @@
-//! What every motion must be.
+//! Conditions that every motion must meet.
 
 use fmm_model::Scalar;
 use fmm_sim::{Engine, EventKind, Samples, Trajectory};

@@ -1,4 +1,4 @@
-//! What a trajectory says of the contact, and what the contact does, are the same, under all forces and belts.
+//! Modes of the contact: a trajectory states those that its motion shows, under all forces and belts.
 
 use fmm_sim::{Event, EventKind, Mode, RungeKutta, Sampling, Trajectory};
 

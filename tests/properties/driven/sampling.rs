@@ -1,4 +1,4 @@
-//! Sample times, and knots of a force that are on its line already, change nothing.
+//! Sampling: neither the sample times nor further knots on a straight piece of a force change a motion.
 
 use fmm_sim::{RungeKutta, Sampling, Trajectory};
 use rand::{RngExt, SeedableRng};

@@ -45,7 +45,7 @@ pub(crate) struct Entry {
 const LIST: &str = "list.json";
 
 impl Campaign {
-    /// Of files, and of the files in folders, by name.
+    /// Campaign of files, and of the files in folders, by name.
     pub(crate) fn of_files(records: &[PathBuf], options: Vec<String>) -> Result<Self, Box<dyn Error>> {
         let mut files = Vec::new();
         for path in records {
@@ -72,7 +72,7 @@ impl Campaign {
         Ok(Self { options, group: None, sheet: None, entries: files.into_iter().map(entry).collect() })
     }
 
-    /// Of a manifest; a `group` goes before the one that it names.
+    /// Campaign of a manifest; a `group` goes before the one that it names.
     pub(crate) fn of_manifest(
         path: &Path,
         options: Vec<String>,
@@ -218,8 +218,8 @@ fn refuse_misspelt(column: &str, command: &clap::Command) -> Result<(), String> 
     let known: Vec<String> = [FILE, EXCLUDE].map(str::to_owned).into_iter().chain(options).collect();
     let Some(meant) = known.iter().find(|option| is_meant(column, option)) else { return Ok(()) };
     Err(format!(
-        "column `{column}` is no option and nearly called like `{meant}`; call it so, or otherwise if it only describes the records; \
-         columns that set something are {}",
+        "column `{column}` is no option and nearly called like `{meant}`; call it so, or otherwise if it only \
+         describes the records; columns that set something are {}",
         known.join(", ")
     ))
 }

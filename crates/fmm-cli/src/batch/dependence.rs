@@ -204,8 +204,8 @@ impl Dependence {
                 let [slope, low, high] = [(line.slope, Some(line.slope_u)), (low, None), (high, None)]
                     .map(|(value, u)| Rounded::new(value, u).to_string());
                 let statement = format!(
-                    "{friction} {verb} {place} between {low} and {high}{axis}: it changes by {} per{per} (p {}), from {} records \
-                     that scatter about the line by {} beyond their uncertainties",
+                    "{friction} {verb} {place} between {low} and {high}{axis}: it changes by {} per{per} (p {}), from \
+                     {} records that scatter about the line by {} beyond their uncertainties",
                     in_unit(slope, unit),
                     probability(line.p),
                     points.len(),

@@ -185,7 +185,7 @@ impl Answer for Found {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Part {
-    /// Which part is done, and what comes next.
+    /// The part that is done, and the one that comes next.
     done: String,
 }
 
@@ -207,7 +207,8 @@ pub(crate) fn batch(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn An
     let campaign = match (&arguments.manifest, &arguments.group) {
         (Some(manifest), group) => Campaign::of_manifest(manifest, options, group.clone(), host)?,
         (None, Some(group)) => {
-            let what = "a manifest says which records belong together, and none is given; list them in one, and give it by --manifest";
+            let what = "a manifest says which records belong together, and none is given; list them in one, and give \
+                        it by --manifest";
             return Err(format!("--group {group}: {what}").into());
         }
         (None, None) => Campaign::of_files(&arguments.records, options)?,

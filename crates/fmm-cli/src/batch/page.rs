@@ -38,11 +38,15 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
     let apart = if apart.is_empty() { apart } else { section("Records that stand apart", &apart) };
     let body = format!(
         "<h1>{TITLE}</h1>\n<p class=\"verdict\">{}</p>\n<p>{}.</p>\n{}{apart}\
-         <section><h2>Together</h2>\n<p>Consensus with random effects; its interval is that of Hartung and Knapp, which holds for few records. \
-         U = 2 u. The mean without effects takes the records to differ by their uncertainties only. What records share, such as one mass, \
-         does not average out. What differs with the load by design has a consensus for each load.</p>\n{}{}</section>\n{}{}{}\
+         <section><h2>Together</h2>\n<p>Consensus with random effects; its interval is that of Hartung and Knapp, \
+         which holds for few records. \
+         U = 2 u. The mean without effects takes the records to differ by their uncertainties only. What records \
+         share, such as one mass, \
+         does not average out. What differs with the load by design has a consensus for each \
+         load.</p>\n{}{}</section>\n{}{}{}\
          <section><h2>Records</h2>\n{}</section>\n\
-         <section><h2>How this was made</h2>\n<dl><dt>Program</dt><dd><code>fmm {}</code></dd><dt>Measured</dt><dd>{}</dd>\
+         <section><h2>How this was made</h2>\n<dl><dt>Program</dt><dd><code>fmm \
+         {}</code></dd><dt>Measured</dt><dd>{}</dd>\
          <dt>Options for all</dt><dd><code>{}</code></dd></dl></section>\n",
         escaped(&result_line(summary).unwrap_or_else(|| records_line(summary))),
         escaped(&records_line(summary)),
@@ -271,9 +275,10 @@ fn dependences(summary: &Summary) -> String {
         figure(&drawn(&[panel]), statement, &format!("dependence-{index}"))
     });
     format!(
-        "<section><h2>Friction against load, amplitude and more</h2>\n<p>Lines with random effects: the records may differ beside the line by \
-         more than their uncertainties. The intervals are those of Knapp and Hartung. The coefficient of a line over the load allows for a force \
-         without load and has nothing in its u of what records share: the result is the consensus above, not this one.</p>\n{}</section>\n",
+        "<section><h2>Friction against load, amplitude and more</h2>\n<p>Lines with random effects: the records may \
+         differ beside the line by more than their uncertainties. The intervals are those of Knapp and Hartung. The \
+         coefficient of a line over the load allows for a force without load and has nothing in its u of what records \
+         share: the result is the consensus above, not this one.</p>\n{}</section>\n",
         shown.collect::<String>()
     )
 }
@@ -292,8 +297,8 @@ fn sheet(summary: &Summary) -> String {
         vec![text_cell(field.part), row_heading(&field.name), value]
     };
     format!(
-        "<section><h2>Record sheet</h2>\n<p>What a friction coefficient is handed on with, by the fields of ASTM G115 as far as they are \
-         public.</p>\n{}{}</section>\n",
+        "<section><h2>Record sheet</h2>\n<p>What a friction coefficient is handed on with, by the fields of ASTM G115 \
+         as far as they are public.</p>\n{}{}</section>\n",
         paragraphs(citation(fields).map(|reference| format!("Cite the data as: {reference}."))),
         table("sheet", &["part", "field", "value"], fields.iter().map(row))
     )

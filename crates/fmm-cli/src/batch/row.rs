@@ -114,7 +114,7 @@ pub(crate) struct Part {
 pub(crate) struct Stated {
     /// The source of uncertainty that it is.
     pub(crate) source: String,
-    /// In the unit of its option, as u is.
+    /// Value in the unit of its option, as u is.
     pub(crate) value: f64,
     pub(crate) u: f64,
 }

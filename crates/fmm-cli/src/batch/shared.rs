@@ -33,7 +33,7 @@ pub(super) struct Parted {
 }
 
 impl Parted {
-    /// Of what records tell of one quantity. Inputs of one source, value and uncertainty are one input.
+    /// Inputs of what records tell of one quantity. Inputs of one source, value and uncertainty are one input.
     pub(super) fn of(told: &[(&Row, &Told)]) -> Self {
         let mut own: Vec<f64> = vec![0.0; told.len()];
         let mut by_input: BTreeMap<(&str, u64, u64), (&Stated, Parts)> = BTreeMap::new();

@@ -26,7 +26,7 @@ pub(crate) struct Summary {
     pub(crate) counted: usize,
     /// Records that the manifest leaves out, with the reason.
     pub(crate) excluded: Vec<Excluded>,
-    /// Records among those found whose fit warnings doubt.
+    /// Records that were found, but whose warnings doubt the fit.
     pub(crate) doubted: Vec<Doubted>,
     /// True if these count all the same, as that was asked for.
     pub(crate) counts_doubtful: bool,
@@ -102,7 +102,7 @@ pub(crate) struct Quantity {
     pub(crate) most_influential: Option<(String, f64)>,
     /// Value and standard uncertainty by the joint fit, where it has the quantity as the records have it.
     pub(crate) joint: Option<(f64, Option<f64>)>,
-    /// By groups, if there are any.
+    /// Repeatability and reproducibility; `None` without groups.
     pub(crate) precision: Option<ByGroup>,
 }
 
@@ -126,7 +126,7 @@ pub(crate) struct ByGroup {
 }
 
 impl Summary {
-    /// Of all rows, with what was `asked` of them together, and what a joint fit said if there was one.
+    /// Summary of all rows, with the questions `asked` of all of them, and with the joint fit if there was one.
     pub(crate) fn of(campaign: &Campaign, rows: &[Row], asked: &Asked, joint: Option<Outcome<Together>>) -> Self {
         let together = joint.as_ref().and_then(Outcome::found);
         let counted: Vec<&Row> = rows.iter().filter(|row| row.counts(asked.count_doubtful)).collect();
@@ -178,9 +178,9 @@ impl Summary {
     pub(crate) fn against_joint(&self) -> Option<String> {
         let differ = self.main().filter(|quantity| quantity.p < DIFFER)?;
         Some(format!(
-            "the records differ in {} beyond their uncertainties (p {}), by {:.2} % in standard deviation, and one law of one \
-             machine for all would claim too small an uncertainty: take the consensus, which allows for it, leave out a record that \
-             lies far off by `exclude` in the manifest, or fit groups of records that agree",
+            "the records differ in {} beyond their uncertainties (p {}), by {:.2} % in standard deviation, and one law \
+             of one machine for all would claim too small an uncertainty: take the consensus, which allows for it, \
+             leave out a record that lies far off by `exclude` in the manifest, or fit groups of records that agree",
             differ.name,
             probability(differ.p),
             100.0 * differ.between / differ.mean.abs()
@@ -190,7 +190,7 @@ impl Summary {
 
 /// Loads that differ by less than this factor are one load that was set again (1), by judgement.
 const ONE_LOAD: f64 = 1.02;
-/// Below this p records differ beyond their uncertainties, or lie far from the others (1).
+/// Value p below which records differ beyond their uncertainties, or one lies far from the others (1).
 pub(super) const DIFFER: f64 = 0.05;
 
 /// True for a force, or a force per mass, which differs with the load by design.

@@ -216,8 +216,8 @@ pub(super) fn apart_lines(summary: &Summary) -> Vec<String> {
         }
         named.push(file);
         lines.push(format!(
-            "far from the others, but counted: {file}: its {} lies {:+.1} % off (p {}); look at this record, and leave it out by \
-             `exclude` in the manifest if there is a reason",
+            "far from the others, but counted: {file}: its {} lies {:+.1} % off (p {}); look at this record, and leave \
+             it out by `exclude` in the manifest if there is a reason",
             name(quantity),
             100.0 * relative,
             probability(*p)
@@ -269,7 +269,7 @@ pub(super) fn group_lines(quantity: &Quantity, group: &ByGroup) -> Vec<String> {
     lines
 }
 
-/// For the eye.
+/// Form for the eye.
 pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
     let names: Vec<(&str, &str)> =
         quantities(&rows.iter().collect::<Vec<_>>()).into_iter().filter(|(name, _)| is_main(name)).collect();

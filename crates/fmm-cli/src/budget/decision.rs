@@ -29,9 +29,9 @@ pub(super) struct Tolerance {
 enum Rule {
     /// Within the tolerance.
     Simple,
-    /// Within it by this many U.
+    /// Guard band of this many U within the tolerance.
     GuardBand(f64),
-    /// Of a specific risk no larger than this.
+    /// Acceptance at a specific risk no larger than this.
     Risk(f64),
 }
 

@@ -197,7 +197,8 @@ impl File {
             if rows.len() != values.len() || values.is_empty() {
                 let (before, here) = (rows.len(), values.len());
                 return Err(format!(
-                    "each row of the sweep has a value of every quantity, but there are {here} of {name} beside {before}"
+                    "each row of the sweep has a value of every quantity, but there are {here} of {name} beside \
+                     {before}"
                 ));
             }
             for (row, value) in rows.iter_mut().zip(values) {

@@ -140,7 +140,8 @@ impl InputEntry {
                 Ok((value, expanded / self.factor()?))
             }
             (None, None) => Err(format!(
-                "{name} needs u, its standard uncertainty, which may be 0, or U, its expanded uncertainty, with k or level"
+                "{name} needs u, its standard uncertainty, which may be 0, or U, its expanded uncertainty, with k or \
+                 level"
             )),
         }
     }
@@ -183,7 +184,8 @@ impl InputEntry {
             }
             Some(other) => {
                 let what = format!(
-                    "there is no distribution {other:?} for {name}; there are rectangular, triangular, arc sine and normal"
+                    "there is no distribution {other:?} for {name}; there are rectangular, triangular, arc sine and \
+                     normal"
                 );
                 return Err(what.into());
             }

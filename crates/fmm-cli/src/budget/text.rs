@@ -22,8 +22,9 @@ pub(super) fn text(answers: &Row) -> String {
         let varies = answer.interval.low < answer.interval.high;
         let verdict = match (answer.validated_digits, &answer.statement) {
             _ if !varies && answer.budget.standard_uncertainty() > 0.0 => {
-                "the trials do not vary although u is not zero: the digits in which they differ are lost beside larger numbers, and \
-                 nothing confirms the interval above; write the formula so that the large numbers cancel first"
+                "the trials do not vary although u is not zero: the digits in which they differ are lost beside larger \
+                 numbers, and nothing confirms the interval above; write the formula so that the large numbers cancel \
+                 first"
             }
             _ if !varies => "the trials do not vary: the result does not depend on what is uncertain",
             (DIGITS.., _) => "the trials confirm the interval above to two digits of u",
@@ -49,7 +50,8 @@ pub(super) fn text(answers: &Row) -> String {
         let [[real, both], [_, imaginary]] = plane.covariance;
         let _ = writeln!(
             text,
-            "{} ({}): covariance matrix of real and imaginary part [[{real:.4e}, {both:.4e}], [{both:.4e}, {imaginary:.4e}]]",
+            "{} ({}): covariance matrix of real and imaginary part [[{real:.4e}, {both:.4e}], [{both:.4e}, \
+             {imaginary:.4e}]]",
             plane.name, plane.unit
         );
         if let Some(k) = plane.coverage_factor {

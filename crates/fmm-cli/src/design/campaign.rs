@@ -76,8 +76,8 @@ impl Campaign {
             }
             other => {
                 return Err(format!(
-                    "a plan from a campaign takes coulomb or coulomb_viscous, but this one is by {other}: write the plan as a file, as \
-                     `fmm design --help` shows"
+                    "a plan from a campaign takes coulomb or coulomb_viscous, but this one is by {other}: write the \
+                     plan as a file, as `fmm design --help` shows"
                 ));
             }
         };
@@ -134,8 +134,8 @@ fn more(measure: &Quantity) -> String {
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
     let text = |u: f64| format!("{}{unit}", Rounded::significant(u, 2));
     format!(
-        "the consensus of {name} has u = {} by {records} records; {TESTS} more that scatter as these do make it {}, as many again {}; \
-         what they share keeps it above {}",
+        "the consensus of {name} has u = {} by {records} records; {TESTS} more that scatter as these do make it {}, as \
+         many again {}; what they share keeps it above {}",
         text(*u),
         text(with(TESTS)),
         text(with(*records)),

@@ -172,7 +172,8 @@ impl Candidates {
             if !(frequency < 0.5 * rate) {
                 let [frequency, rate, half] = [frequency, rate, 0.5 * rate].map(Rounded::every_digit);
                 return Err(format!(
-                    "a {of} of {frequency} Hz cannot be seen at the rate of {rate} Hz: its frequency must be below half the rate, {half} Hz"
+                    "a {of} of {frequency} Hz cannot be seen at the rate of {rate} Hz: its frequency must be below \
+                     half the rate, {half} Hz"
                 )
                 .into());
             }

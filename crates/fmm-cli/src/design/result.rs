@@ -63,7 +63,11 @@ impl Found {
             Preparations::Several(records) => records.first(),
         };
         let (Some(model), Some(record)) = (model, record) else {
-            return Err("the document has no model by its preferred law, or no record".to_owned());
+            return Err(
+                "the document lacks its record or the model of its preferred law; give one that `fmm identify \
+                        --json` wrote"
+                    .to_owned(),
+            );
         };
         let Some(frequency) = model.parameters.get("natural_frequency_hz").map(|finding| finding.value) else {
             return Err(
@@ -92,8 +96,8 @@ impl Found {
         let releases = RELEASES.map(|factor| format!("{:.3e}", factor * release)).join(", ");
         let _ = writeln!(
             text,
-            "\n[sensor]\nquantity = \"{quantity}\"\nnoise = {:e}\n\n[[candidates]]\nrelease = [{releases}]\nrate = {}\nduration = \
-             {:.4}\n\n[choose]\naim = \"{aim}\"\ntests = {TESTS}",
+            "\n[sensor]\nquantity = \"{quantity}\"\nnoise = {:e}\n\n[[candidates]]\nrelease = [{releases}]\nrate = \
+             {}\nduration = {:.4}\n\n[choose]\naim = \"{aim}\"\ntests = {TESTS}",
             model.rms_residual,
             record.rate_hz,
             record.to_s - record.from_s

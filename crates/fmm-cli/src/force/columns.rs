@@ -139,8 +139,8 @@ impl Role {
         let (what, option) = (self.option.trim_start_matches('-'), self.option);
         if *least == Distance::Across {
             return Err(format!(
-                "the only column that may be the {what} is \"{}\", which is across the motion by its name; name the {what} \
-                 by {option}",
+                "the only column that may be the {what} is \"{}\", which is across the motion by its name; name the \
+                 {what} by {option}",
                 nearest[0]
             ));
         }

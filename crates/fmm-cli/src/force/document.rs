@@ -1,4 +1,4 @@
-//! What was found in forces as a document for programs.
+//! Document of `fmm force`: the findings of measured forces, for programs.
 
 use std::error::Error;
 

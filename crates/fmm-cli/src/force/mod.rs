@@ -259,8 +259,8 @@ fn without_a_law(record: &ForceRecord) -> Vec<String> {
     if let (Some(stiffness), Some(breakaway)) = (of_onsets(|a| a.stiffness.value), of_onsets(|a| a.breakaway.value)) {
         let count = onsets.len();
         lines.push(format!(
-            "onsets of sliding: {count}, in the median {stiffness:.4e} {force}/{position} of presliding stiffness, breakaway at \
-             {breakaway:.4e} {force}"
+            "onsets of sliding: {count}, in the median {stiffness:.4e} {force}/{position} of presliding stiffness, \
+             breakaway at {breakaway:.4e} {force}"
         ));
     }
     lines

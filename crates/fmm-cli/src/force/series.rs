@@ -24,9 +24,11 @@ impl Series {
         let Some(record) = self.record(times) else { return Vec::new() };
         let (examination, name) = (Examination::of(&record), &self.name);
         let saturation = examination.saturation().map(|found| {
-            let levels: Vec<String> = [found.lower, found.upper].into_iter().flatten().map(|at| at.to_string()).collect();
+            let levels: Vec<String> =
+                [found.lower, found.upper].into_iter().flatten().map(|at| at.to_string()).collect();
             format!(
-                "\"{name}\" lies on {} in {} samples: if the range of the instrument ends there, what is beyond is lost",
+                "\"{name}\" lies on {} in {} samples: if the range of the instrument ends there, what is beyond is \
+                 lost",
                 levels.join(" and "),
                 found.samples
             )

@@ -111,8 +111,8 @@ impl Source {
         let velocity = VELOCITY.column(self.velocity.as_ref(), &labels, remarks)?;
         if position.is_none() && velocity.is_none() {
             return Err(format!(
-                "no column is a position or a velocity, along which friction acts; name one by --position or --velocity; \
-                 there are: {}",
+                "no column is a position or a velocity, along which friction acts; name one by --position or \
+                 --velocity; there are: {}",
                 names.join(", ")
             )
             .into());

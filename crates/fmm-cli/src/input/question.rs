@@ -173,7 +173,11 @@ impl Question {
     /// The same where laws are compared and not searched: viscous, dry and both unless others are named.
     pub(crate) fn compared(&self) -> Result<Vec<Candidate>, Box<dyn Error>> {
         if let Some(seconds) = self.time_limit {
-            return Err(format!("--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison fits all its laws").into());
+            return Err(format!(
+                "--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison \
+                                fits all its laws"
+            )
+            .into());
         }
         if self.law.is_empty() {
             return Self { law: vec!["all".to_owned()], ..self.clone() }.candidates();

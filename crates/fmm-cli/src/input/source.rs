@@ -229,8 +229,8 @@ impl Choice {
         let meaning = self.request().meaning(label).map_err(|error| self.with_remedy(error))?;
         if !is_motion(meaning.quantity) && !self.is_drive {
             return Err(format!(
-                "channel \"{}\" is a record of {}, and friction is fitted to a velocity, a displacement or an acceleration: \
-                 give one of these by --channel",
+                "channel \"{}\" is a record of {}, and friction is fitted to a velocity, a displacement or an \
+                 acceleration: give one of these by --channel",
                 label.name(),
                 meaning.quantity
             )

@@ -1,4 +1,4 @@
-//! What a command takes a channel of a file for, and files that should be refused.
+//! Channels of files as a command takes them, and files that should be refused.
 
 use std::path::{Path, PathBuf};
 

@@ -29,7 +29,8 @@ pub fn table(class: &str, headings: &[&str], rows: impl IntoIterator<Item = Vec<
     let [head, body] = [head.collect::<Vec<_>>(), body.collect()].map(|parts| parts.concat());
     // The table may be wider than a small screen, the page not.
     format!(
-        "<div class=\"wide\"><table class=\"{class}\">\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
+        "<div class=\"wide\"><table \
+         class=\"{class}\">\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
     )
 }
 

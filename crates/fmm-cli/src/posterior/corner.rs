@@ -41,7 +41,7 @@ fn range(marginal: &Marginal) -> (f64, f64) {
     (end(LEFT_OUT), end(1.0 - LEFT_OUT))
 }
 
-/// The bin of a value, if it is in one of `count` over the range.
+/// The bin of a value, of `count` bins over the range; `None` outside of the range.
 fn bin(value: f64, (low, high): (f64, f64), count: usize) -> Option<usize> {
     let share = (value - low) / (high - low);
     (0.0..1.0).contains(&share).then_some((share * count as f64) as usize)

@@ -18,7 +18,8 @@ mod unavailable {
     use fmm_identify::{Experiment, Identification};
     use serde::Serialize;
 
-    const WHY: &str = "this program was built without the posterior, which takes a minute more to compile: run cargo with `--features posterior`";
+    const WHY: &str = "this program was built without the posterior, which takes a minute more to compile: run cargo \
+                       with `--features posterior`";
 
     /// A posterior of which there is none.
     #[derive(Serialize)]

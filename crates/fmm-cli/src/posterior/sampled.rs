@@ -52,7 +52,8 @@ impl Posterior {
         } else {
             figure(
                 &corner(&drawn),
-                "The posterior of what the records share: the density of each quantity, and each pair of them, darker where it is more probable.",
+                "The posterior of what the records share: the density of each quantity, and each pair of them, darker \
+                 where it is more probable.",
                 "corner",
             )
         };
@@ -100,7 +101,8 @@ fn checks(posterior: &IdentificationPosterior) -> String {
     });
     let headings = ["feature", "measured", "median of records from the posterior", "unit", "p"];
     format!(
-        "<p>Records made by the posterior, beside the measured one; p near 0 or 1 says that the law cannot make such a record.</p>\n{}",
+        "<p>Records made by the posterior, beside the measured one; p near 0 or 1 says that the law cannot make such a \
+         record.</p>\n{}",
         table("checks", &headings, rows)
     )
 }

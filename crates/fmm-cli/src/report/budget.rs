@@ -36,9 +36,9 @@ pub(super) fn budget(preferred: &Identification) -> String {
     };
     let headings: Vec<&str> = ["quantity", "u", "unit"].into_iter().chain(sources.iter().copied()).collect();
     format!(
-        "<p>What each source alone makes of u, and its share of u². Residuals count with the degrees of freedom that they have; what \
-         was given counts as known, so that ν of the whole follows by Welch and Satterthwaite (JCGM 100:2008, clauses 5.1 and G.4.1). \
-         What is the largest is what to make smaller first.</p>\n{}",
+        "<p>What each source alone makes of u, and its share of u². Residuals count with the degrees of freedom that \
+         they have; what was given counts as known, so that ν of the whole follows by Welch and Satterthwaite (JCGM \
+         100:2008, clauses 5.1 and G.4.1). What is the largest is what to make smaller first.</p>\n{}",
         table("budget", &headings, budgets.iter().filter_map(row))
     )
 }

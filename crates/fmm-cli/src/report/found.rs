@@ -45,7 +45,7 @@ pub(crate) struct Found {
     pub(crate) comparison: Comparison,
     /// `None` where laws are compared.
     pub(crate) curve: Option<Curve>,
-    /// Of the preferred law, if that was asked for.
+    /// Posterior of the preferred law, if that was asked for.
     pub(crate) posterior: Option<Posterior>,
     /// Why there is no posterior though one was asked for.
     pub(crate) failure: Option<String>,

@@ -95,8 +95,8 @@ fn findings(found: &Found) -> String {
     let headings = ["quantity", "value ± u", "unit", "95 % interval", "k", "U = k u", "ν", "origin"];
     let preferred = found.comparison.preferred();
     format!(
-        "<p>By the law {}. u is a standard uncertainty with ν degrees of freedom, U the expanded uncertainty for a coverage probability of \
-         95 % with the coverage factor k (JCGM 100:2008, clauses 6 and G.4).</p>\n{}",
+        "<p>By the law {}. u is a standard uncertainty with ν degrees of freedom, U the expanded uncertainty for a \
+         coverage probability of 95 % with the coverage factor k (JCGM 100:2008, clauses 6 and G.4).</p>\n{}",
         escaped(preferred.law()),
         table("findings", &headings, preferred.findings().iter().map(row))
     )
@@ -182,8 +182,8 @@ fn amplitude(found: &Found, pictures: &Pictures) -> String {
     let backbone = backbone.map_or_else(String::new, |backbone| {
         let suggestion = backbone.suggestion();
         let caption = format!(
-            "Without a law: the spectrum, the envelope of the strongest mode, and its frequency and equivalent damping against the \
-             amplitude, with {suggestion}."
+            "Without a law: the spectrum, the envelope of the strongest mode, and its frequency and equivalent damping \
+             against the amplitude, with {suggestion}."
         );
         figure(&drawn(&backbone::panels(record, &backbone, &suggestion)), &caption, "backbone")
     });

@@ -29,7 +29,8 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
         }
         (true, false) => {
             format!(
-                "All intervals are symmetric within {within:.0} % of k u, as value ± k u takes them: no profile is drawn."
+                "All intervals are symmetric within {within:.0} % of k u, as value ± k u takes them: no profile is \
+                 drawn."
             )
         }
         (false, true) => "For none of the fitted quantities does value ± k u hold.".to_owned(),
@@ -55,10 +56,11 @@ pub(super) fn profiles(found: &Found) -> Result<String, Box<dyn Error>> {
     let table = if bent.is_empty() { String::new() } else { table("profiles", &headings, rows) };
     let figures = bent.iter().enumerate().map(|(number, profile)| picture(number, profile));
     Ok(format!(
-        "<p>Each fitted quantity is moved away from its value and all others are fitted again, until the sum of squares has risen by as \
-         much as 95 % allow: that interval follows the bends of the model, value ± k u does not. Both speak of the residuals alone, with \
-         the noise that they show; gains, inputs and other laws come on top of it. A quantity counts as bent from a difference of \
-         {:.0} % of k u on. The search took {} evaluations of the motion, and ends after {}.</p>\n<p>{said}</p>\n{left_out}{table}{}",
+        "<p>Each fitted quantity is moved away from its value and all others are fitted again, until the sum of \
+         squares has risen by as much as 95 % allow: that interval follows the bends of the model, value ± k u does \
+         not. Both speak of the residuals alone, with the noise that they show; gains, inputs and other laws come on \
+         top of it. A quantity counts as bent from a difference of {:.0} % of k u on. The search took {} evaluations \
+         of the motion, and ends after {}.</p>\n<p>{said}</p>\n{left_out}{table}{}",
         100.0 * Profiles::BENT,
         profiles.residual_evaluations(),
         Profiles::MOST_EVALUATIONS,
@@ -104,7 +106,8 @@ fn picture(number: usize, profile: &Profile) -> String {
         .with(Role::Measured, "value ± k u", parabola)
         .with(Role::Reference, "95 %", [(first, threshold), (last, threshold)]);
     let caption = format!(
-        "{}: the sum of squares with all others fitted again, beside the parabola of value ± k u; below the line lies the 95 % interval.",
+        "{}: the sum of squares with all others fitted again, beside the parabola of value ± k u; below the line lies \
+         the 95 % interval.",
         words(profile.parameter().name())
     );
     figure(&drawn(&[panel]), &caption, &format!("profile-{number}"))

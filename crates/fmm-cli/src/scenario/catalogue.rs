@@ -80,7 +80,8 @@ const SMOOTHED: Entry = Entry {
         let (inner, law) = contact(given.inner()?)?;
         let Some(law) = law.sliding else {
             return Err(format!(
-                "the law {inner} has an internal state and cannot be smoothed in the speed; a law of the speed alone can, such as coulomb or stribeck"
+                "the law {inner} has an internal state and cannot be smoothed in the speed; a law of the speed alone \
+                 can, such as coulomb or stribeck"
             )
             .into());
         };

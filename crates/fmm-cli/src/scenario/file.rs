@@ -116,13 +116,14 @@ impl Machine {
     /// The oscillator of these numbers.
     ///
     /// # Errors
-    /// Of two descriptions of one damping, or of a number that cannot be.
+    /// Text on two descriptions of one damping, or on a number that cannot be.
     pub(crate) fn oscillator(&self) -> Result<Oscillator, Box<dyn Error>> {
         let drag = &self.damping;
         let damping = match &drag.peak_velocity_line {
             Some(_) if drag.linear.is_some() || drag.quadratic.is_some() => {
                 return Err(
-                    "damping is given by linear and quadratic, or by peak_velocity_line, which stands for both; not by both ways"
+                    "damping is given by linear and quadratic, or by peak_velocity_line, which stands for both; not by \
+                     both ways"
                         .into(),
                 );
             }
@@ -244,9 +245,9 @@ pub(crate) struct Initial {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub(crate) enum Output {
-    /// At these times (s).
+    /// Samples at these times (s).
     Times(Vec<f64>),
-    /// At this rate (1/s), from 0 to the duration.
+    /// Samples at this rate (1/s), from 0 to the duration.
     Rate(f64),
 }
 

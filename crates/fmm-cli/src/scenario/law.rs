@@ -56,7 +56,8 @@ impl Given {
         if first.len() != second.len() {
             let (law, stiffnesses, others) = (self.law, first.len(), second.len());
             return Err(format!(
-                "the law {law} needs two numbers for each element, but {stiffnesses} stiffnesses and {others} others were given"
+                "the law {law} needs two numbers for each element, but {stiffnesses} stiffnesses and {others} others \
+                 were given"
             ));
         }
         Ok(first.iter().copied().zip(second.iter().copied()).collect())

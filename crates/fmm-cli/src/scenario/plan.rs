@@ -50,7 +50,8 @@ impl Plan {
                 if intervals.is_nan() || intervals >= MOST_SAMPLES {
                     let count = Rounded::every_digit(intervals + 1.0);
                     return Err(format!(
-                        "{count} samples were asked for, and at most {MOST_SAMPLES} are given; lower the rate or the duration"
+                        "{count} samples were asked for, and at most {MOST_SAMPLES} are given; lower the rate or the \
+                         duration"
                     )
                     .into());
                 }

@@ -316,7 +316,7 @@ fn require_finite(subject: &str, numbers: &[f64]) -> Result<(), FitError> {
 struct Eigen {
     /// √Mⱼⱼ; 1 for a parameter about which nothing is known.
     scales: Vec<f64>,
-    /// In descending order, those of rounding included.
+    /// Eigenvalues in descending order, those of rounding included.
     values: Vec<f64>,
     vectors: Vec<Vec<f64>>,
 }

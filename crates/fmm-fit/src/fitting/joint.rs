@@ -174,7 +174,7 @@ impl<P: Residuals> Joint<P> {
         Ok(sums.iter().zip(&self.parameters).map(mean).collect())
     }
 
-    /// Of each problem the values of its parameters in `fit`, which must be one of this problem, in its own order and
+    /// For each problem the values of its parameters in `fit`, which must be one of this problem, in its own order and
     /// shared ones included.
     ///
     /// # Errors
@@ -184,7 +184,7 @@ impl<P: Residuals> Joint<P> {
         Ok(self.members.iter().map(|member| member.values(fit.values())).collect())
     }
 
-    /// Of each parameter of a problem the index in the joint fit, for its uncertainty and correlations; `None` for a
+    /// For each parameter of a problem the index in the joint fit, for its uncertainty and correlations; `None` for a
     /// number that is none of a problem.
     pub fn indices(&self, problem: usize) -> Option<&[usize]> {
         self.members.get(problem).map(|member| member.indices.as_slice())

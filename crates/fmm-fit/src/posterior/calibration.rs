@@ -85,7 +85,7 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
     parameters: Vec<Parameter>,
-    /// Of each parameter, one per record.
+    /// Ranks of each parameter, one per record.
     ranks: Vec<Vec<usize>>,
     failures: Vec<String>,
 }

@@ -134,7 +134,7 @@ pub(super) struct Convergence {
 }
 
 impl Convergence {
-    /// Of `values` of `chains` chains of equal length, one after the other; `sorted` are the same in ascending order.
+    /// Convergence of `values` of `chains` chains of equal length, one after the other; `sorted` are the same in ascending order.
     pub(super) fn of(values: &[f64], chains: usize, sorted: &[f64]) -> Self {
         let halves = Halves::of(values, chains);
         let scores = halves.normal_scores();

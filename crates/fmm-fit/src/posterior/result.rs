@@ -116,7 +116,7 @@ impl Posterior {
         self.values.chunks_exact(self.parameters.len().max(1))
     }
 
-    /// Of each draw the standard deviation of a residual (unit of the residuals), and its correlation with its
+    /// For each draw the standard deviation of a residual (unit of the residuals), and its correlation with its
     /// neighbour (1).
     pub fn noise(&self) -> &[(f64, f64)] {
         &self.noise

@@ -26,7 +26,7 @@ pub enum PosteriorWarning {
     Divergences {
         /// Their number.
         count: usize,
-        /// Of how many draws.
+        /// Number of all draws.
         draws: usize,
     },
     /// A random walk without gradients finds another moment, in the unit of the parameter.
@@ -49,17 +49,18 @@ impl fmt::Display for PosteriorWarning {
         match self {
             Self::ChainsDiffer { quantity, r_hat } => write!(
                 f,
-                "the chains do not agree on {quantity}: R-hat is {r_hat:.3} and should be below 1.01; ask for more draws, and look \
-                 for a second minimum"
+                "the chains do not agree on {quantity}: R-hat is {r_hat:.3} and should be below 1.01; ask for more \
+                 draws, and look for a second minimum"
             ),
             Self::FewEffectiveDraws { quantity, effective } => write!(
                 f,
-                "{quantity} has {effective:.0} effective draws, fewer than 400: its interval is uncertain; ask for more draws"
+                "{quantity} has {effective:.0} effective draws, fewer than 400: its interval is uncertain; ask for \
+                 more draws"
             ),
             Self::Divergences { count, draws } => write!(
                 f,
-                "{count} of {draws} trajectories diverged: the density bends sharply there, and the draws may avoid that region; \
-                 compare with the profile intervals"
+                "{count} of {draws} trajectories diverged: the density bends sharply there, and the draws may avoid \
+                 that region; compare with the profile intervals"
             ),
             Self::Disagrees { parameter, is_deviation, with_gradient, without_gradient, standard_error } => {
                 let moment = if *is_deviation { "standard deviation" } else { "mean" };
@@ -67,8 +68,8 @@ impl fmt::Display for PosteriorWarning {
                     [with_gradient, without_gradient].map(|value| Rounded::new(*value, Some(*standard_error)));
                 write!(
                     f,
-                    "a random walk without gradients does not agree: the {moment} of {parameter} is {without} by it and {with} by \
-                     the sampler; the residuals may have kinks or several minima"
+                    "a random walk without gradients does not agree: the {moment} of {parameter} is {without} by it \
+                     and {with} by the sampler; the residuals may have kinks or several minima"
                 )
             }
         }

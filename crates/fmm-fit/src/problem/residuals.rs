@@ -80,7 +80,9 @@ use crate::problem::block::Block;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no least-squares problem",
     label = "this does not implement `Residuals`",
-    note = "a formula that implements `Model` becomes a problem if you wrap it in `Automatic::<_, N>::new(model)`, N being the number of its parameters; a closure if you give it to `curve_fit`, `curve` or `ClosureProblem::new`"
+    note = "a formula that implements `Model` becomes a problem if you wrap it in `Automatic::<_, N>::new(model)`, N \
+            being the number of its parameters; a closure if you give it to `curve_fit`, `curve` or \
+            `ClosureProblem::new`"
 )]
 pub trait Residuals {
     /// The parameters: names, units and bounds. Equal bounds hold a parameter fixed.
@@ -138,9 +140,9 @@ pub trait Residuals {
 pub enum Derivatives {
     /// None: the solver takes differences.
     None,
-    /// By the parameters that are not fixed. [`Sensitivity`](crate::Sensitivity) takes differences by the fixed ones.
+    /// Derivatives by the parameters that are not fixed. [`Sensitivity`](crate::Sensitivity) takes differences by the fixed ones.
     Free,
-    /// By all parameters, fixed ones included.
+    /// Derivatives by all parameters, fixed ones included.
     All,
 }
 

@@ -29,7 +29,7 @@ use crate::result::prediction::Prediction;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Polynomial {
-    /// In powers of x.
+    /// Coefficients of the powers of x.
     regression: LinearRegression,
     /// Coefficients and roots of the covariance in powers of t.
     local_coefficients: Vec<f64>,
@@ -204,7 +204,7 @@ impl StraightLine {
         self.regression().standard_uncertainty(0)
     }
 
-    /// Standard uncertainty of the slope; `None` without a degree of freedom to tell s.
+    /// Standard uncertainty of the slope; `None` if no degree of freedom is left to estimate the scatter.
     pub fn slope_uncertainty(&self) -> Option<f64> {
         self.regression().standard_uncertainty(1)
     }

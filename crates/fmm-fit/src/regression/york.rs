@@ -226,13 +226,14 @@ fn check(points: &[UncertainPoint]) -> Result<(), FitError> {
 }
 
 fn no_uncertainty(index: usize) -> FitError {
-    let what = format!("point {index} has no uncertainty in the direction that counts; give it one in x or in y");
+    let what =
+        format!("point {index} has no uncertainty that counts at this slope; give it an uncertainty in x and in y");
     FitError::out_of_range(what, 0.0)
 }
 
 fn no_slope() -> FitError {
     FitError::no_minimum(
-        "no slope minimises the sum of squares: the line is vertical, or there is none; exchange x and y",
+        "no slope minimises the sum of squares: the points show a vertical line or none; exchange x and y",
     )
 }
 

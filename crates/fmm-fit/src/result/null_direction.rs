@@ -205,7 +205,7 @@ impl fmt::Display for NullDirection {
 }
 
 impl NullDirection {
-    /// In percent, and for values of zero as they are.
+    /// Changes in percent, and for values of zero as they are.
     fn write_changes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = (0..self.names.len()).filter(|&j| self.components[j].abs() > self.noise);
         let changes: Vec<String> = parts

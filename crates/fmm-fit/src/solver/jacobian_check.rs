@@ -38,7 +38,8 @@ impl fmt::Display for JacobianMismatch {
         let [derivative, difference] = [self.derivative, self.difference].map(|value| Rounded::new(value, None));
         write!(
             f,
-            "the derivative of residual {} by {} is {derivative} as the problem gives it and {difference} by differences",
+            "the derivative of residual {} by {} is {derivative} as the problem gives it and {difference} by \
+             differences",
             self.residual, self.parameter
         )
     }

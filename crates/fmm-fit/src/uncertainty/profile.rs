@@ -135,7 +135,7 @@ impl ProfileInterval {
         options: &Options,
     ) -> Result<Vec<(f64, f64)>, FitError> {
         fit.require_of(problem)?;
-        let unknown = || FitError::unknown_name(format!("there is no parameter called number {}", self.index));
+        let unknown = || FitError::unknown_name(format!("there is no parameter with the number {}", self.index));
         let bounds = problem.parameters().get(self.index).ok_or_else(unknown)?.bounds();
         let best = fit.values()[self.index];
         let mut profile = Profile::new(problem, fit, self.index, self.scale, options);

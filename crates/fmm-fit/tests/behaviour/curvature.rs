@@ -1,4 +1,4 @@
-//! Where the sum of squares bends otherwise than the linear model of the residuals.
+//! Sums of squares that bend otherwise than the linear model of the residuals.
 
 use fmm_fit::{Automatic, Derivatives, EvaluationError, Model, Options, Residuals, check_jacobian, solve};
 use fmm_model::{Parameter, Scalar};

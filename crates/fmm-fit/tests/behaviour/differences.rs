@@ -1,4 +1,4 @@
-//! What differences may claim where the model jumps, where a start is tiny, and where squares underflow.
+//! Differences where the model jumps, where a start is tiny, and where squares underflow.
 
 use fmm_fit::{Derivatives, EvaluationError, FitError, Options, Outcome, Residuals, solve};
 use fmm_model::{Bounds, Parameter};

@@ -1,4 +1,4 @@
-//! What the solver and what stands on it promise, beyond the numbers that the oracles hold.
+//! Promises of the solver, and of all that uses it, beyond the numbers of the oracles.
 
 mod curvature;
 mod differences;

@@ -1,4 +1,4 @@
-//! What fixed values do to estimates, against fits repeated with the fixed values moved.
+//! Effect of fixed values on estimates, against fits repeated with the fixed values moved.
 
 use fmm_fit::{Derivatives, EvaluationError, FitError, Options, Residuals, Sensitivity, solve};
 use fmm_model::{Bounds, Parameter, Scalar};

@@ -1,4 +1,4 @@
-//! Requests that have no posterior.
+//! Refusals: problems and options without a posterior.
 
 use fmm_fit::{Bounds, FitError, Parameter, Prior, Sampler};
 

@@ -181,8 +181,9 @@ pub struct Reparametrisation<O> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` belongs to no family of laws",
     label = "this does not implement `FamilyMember`",
-    note = "a law that implements `SlidingLaw` alone is simulated by the engine `RungeKutta`, one that implements `BristleLaw` by `Bristle`; \
-            `simulate`, which chooses the engine, also asks for `LawFamily` and `FamilyMember`"
+    note = "a law that implements `SlidingLaw` alone is simulated by the engine `RungeKutta`, one that implements \
+            `BristleLaw` by `Bristle`; `simulate`, which chooses the engine, also asks for `LawFamily` and \
+            `FamilyMember`"
 )]
 pub trait FamilyMember: Sized {
     /// The number type.

@@ -77,7 +77,8 @@ impl Guess {
         let (mut values, to_fitted) = match machine.scale() {
             Scale::Unknown => {
                 return Err(IdentifyError::contradiction(
-                    "a guess needs a mass or a stiffness to begin with, or nothing of either: a machine of unknown mass has no frequency alone",
+                    "a guess cannot begin with a machine of unknown mass and stiffness: give one of them, or describe \
+                     the machine per unit mass",
                 ));
             }
             _ => (vec![frequency], load / per_mass_of_unit),

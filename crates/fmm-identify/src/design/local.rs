@@ -145,7 +145,8 @@ impl Local<'_> {
             }
             Scale::PerUnitMass if test.added_mass.is_some() || test.added_stiffness.is_some() => {
                 return Err(IdentifyError::contradiction(format!(
-                    "{} adds to a machine of which neither mass nor stiffness is known: give one",
+                    "{} adds a mass or a stiffness, but neither is known of the machine; give its mass or its \
+                     stiffness",
                     test.name()
                 )));
             }
@@ -154,7 +155,8 @@ impl Local<'_> {
         let is_linear = machine.restoring() == fmm_model::Restoring::Linear && !self.layout.terms.has(Term::Gap);
         if test.added_stiffness.is_some() && !is_linear {
             return Err(IdentifyError::contradiction(format!(
-                "{} adds a spring to a machine whose own is not linear, so that the whole would be another law; leave it out",
+                "{} adds a spring to a machine whose own is not linear, so that the whole would be another law; leave \
+                 it out",
                 test.name()
             )));
         }

@@ -146,7 +146,8 @@ impl Drive {
         if self.record.start() > start + slack || self.record.end() < end - slack && !has_ended {
             let (known_from, known_to) = (self.record.start(), self.record.end());
             return Err(IdentifyError::not_seen(format!(
-                "the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to {end} s; crop the response"
+                "the drive is known from {known_from} s to {known_to} s, but the response lasts from {start} s to \
+                 {end} s; crop the response"
             )));
         }
         Ok(())

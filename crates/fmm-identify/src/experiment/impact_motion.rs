@@ -8,7 +8,7 @@ use fmm_model::Estimated;
 
 /// Fewer samples than this are too few to know an offset from.
 pub(crate) const FEWEST_QUIET: usize = 16;
-/// A motion is seen this far above the noise (standard deviations), or this share of its largest velocity.
+/// Smallest velocity of a motion that is seen: standard deviations of the noise, or a share of its largest velocity.
 const SEEN: f64 = 6.0;
 const SEEN_SHARE: f64 = 1e-3;
 /// Means that show motion below the noise are over this part of the motion, and no more samples than that, so that
@@ -17,7 +17,7 @@ const SWINGS: usize = 32;
 const LONGEST_MEAN: usize = 64;
 /// Share of an offset that may be rounding.
 const ROUNDING: f64 = 1e-12;
-/// A motion is followed for this share of its duration after it was last seen.
+/// Time over which a motion is followed after it was last seen, as a share of its duration.
 const AFTER: f64 = 0.1;
 
 /// Mean of the samples with its uncertainty if they have white noise of this standard deviation.

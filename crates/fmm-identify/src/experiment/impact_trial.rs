@@ -118,7 +118,8 @@ impl ImpactTrial {
         let swing = motion.velocity[blow.begin..motion.end].iter().find(|v| v.abs() > 0.25 * motion.speed);
         if let Some(first) = swing.filter(|first| *first * impulse < 0.0) {
             return Err(IdentifyError::not_seen(format!(
-                "the force pushes one way ({impulse} N s) and the machine moves the other ({first} m/s); turn the sign of one channel"
+                "the force pushes one way ({impulse} N s) and the machine moves the other ({first} m/s); turn the sign \
+                 of one channel"
             )));
         }
         let samples = blow.hits.iter().map(Range::len).sum::<usize>() as f64;
@@ -369,12 +370,12 @@ mod tests {
         assert!(
             matches!(prepare(&velocity, &velocity), Err(IdentifyError::Impact(FrfError::Mismatch { what })) if what.contains("must be a record of"))
         );
-        assert!(
-            matches!(prepare(&force, &force), Err(IdentifyError::WrongRecord { what }) if what.contains("needs a velocity"))
-        );
+        assert!(matches!(prepare(&force, &force), Err(IdentifyError::WrongRecord { what }) if what.contains("needs a \
+                velocity")));
         let other_unit = velocity.clone().with_unit("mm/s");
         assert!(
-            matches!(prepare(&force, &other_unit), Err(IdentifyError::WrongRecord { what }) if what.contains("scale the record"))
+            matches!(prepare(&force, &other_unit), Err(IdentifyError::WrongRecord { what }) if what.contains("scale \
+                the record"))
         );
 
         let white = Normal::new(0.0, 0.5).unwrap().sample_iter(ChaCha8Rng::seed_from_u64(1));
@@ -394,7 +395,8 @@ mod tests {
         );
         let (early, moving) = records(|i| half_sine(0, 20.0, i), |i| swing(i + 100), 400);
         assert!(
-            matches!(prepare(&early, &moving), Err(IdentifyError::TooFew { what, .. }) if what.contains("offset of the response"))
+            matches!(prepare(&early, &moving), Err(IdentifyError::TooFew { what, .. }) if what.contains("offset of the \
+                response"))
         );
     }
 }

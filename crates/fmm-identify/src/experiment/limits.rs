@@ -13,7 +13,7 @@ const ENOUGH_HALF_SWINGS: usize = 4;
 const COARSE: f64 = 5e-3;
 
 impl Warning {
-    /// Limits of a record of a machine, whose spring `is_bent` or a straight line.
+    /// Limits of a record of a machine with a linear spring, or with another one if `is_bent`.
     pub(crate) fn of_record(summary: &RecordSummary, is_bent: bool, warnings: &mut Vec<Self>) {
         let (first, last) = summary.amplitudes;
         // Two turning points give one amplitude.

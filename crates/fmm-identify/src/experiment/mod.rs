@@ -237,7 +237,7 @@ impl Experiment {
         self.drive().is_some_and(Drive::is_force)
     }
 
-    /// The lines of its spectrum that are compared; `None` where its samples are.
+    /// The lines of its spectrum that are compared; `None` if its samples are compared instead.
     pub(crate) fn lines(&self) -> Option<&Lines> {
         self.lines.as_deref()
     }

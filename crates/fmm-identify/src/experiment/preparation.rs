@@ -133,7 +133,7 @@ pub struct RecordSummary {
     /// Time at which something else than the machine itself took the motion, after which the record was not used unless
     /// it was asked for.
     pub interruption: Option<Interruption>,
-    /// Multiplication of the samples before they were recorded; only the measured ones are used.
+    /// Upsampling that was done before the record was written; only the measured samples are used.
     pub upsampling: Option<Upsampling>,
     /// Another mode that vibrates beside the one that is fitted.
     pub second_mode: Option<SecondMode>,

@@ -25,15 +25,15 @@ use std::ops::Range;
 /// <https://dlmf.nist.gov>.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SampledPulse {
-    /// Of the impulse (N s).
+    /// Standard uncertainty of the impulse (N s).
     pub(crate) impulse: f64,
-    /// Of the time at which the impulse acts (s).
+    /// Standard uncertainty of the time at which the impulse acts (s).
     pub(crate) time: f64,
 }
 
 impl SampledPulse {
-    /// Of a `force` (N) sampled every `interval` (s), with this `noise` (N). It is zero but for `hits`, the ranges
-    /// within which the hammer is in contact.
+    /// Uncertainties by a `force` (N) sampled every `interval` (s), with this `noise` (N). It is zero but for `hits`, the
+    /// ranges within which the hammer is in contact.
     pub(crate) fn of(force: &[f64], hits: &[Range<usize>], interval: f64, noise: f64) -> Self {
         let sum: f64 = force.iter().sum();
         let moment: f64 = force.iter().enumerate().map(|(i, f)| i as f64 * f).sum();

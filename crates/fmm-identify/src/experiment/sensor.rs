@@ -67,7 +67,7 @@ impl Sensor {
         Ok(Self { delay: ModelError::require_not_negative("delay of the sensor", delay, "s")?, ..self })
     }
 
-    /// By how much records are late (s).
+    /// Delay of records (s).
     pub fn delay(&self) -> f64 {
         self.delay
     }
@@ -135,7 +135,7 @@ struct Section {
     angular: f64,
     /// True if it is a pair of poles, or a real one.
     is_pair: bool,
-    /// By how much an input that grows comes out late (s): 2ζ/ω, of a real pole 1/ω.
+    /// Delay of an input that grows steadily (s): 2ζ/ω, of a real pole 1/ω.
     lag: f64,
     /// Transition of a free motion [y, y′] over an interval.
     step: [[f64; 2]; 2],

@@ -267,7 +267,7 @@ mod tests {
     /// Level and damping of [`CoulombViscous`] per unit mass.
     const TRUTH: [f64; 2] = [0.3, 0.1];
 
-    /// By how much the response to a change of each value of the law differs from the derivatives of the simulated
+    /// Difference of the response to a change of each value of the law from the derivatives of the simulated
     /// motion, as a share of these (1), in a record of this `quantity`.
     fn differences(quantity: Quantity, unit: &str) -> [f64; 2] {
         let law = CoulombViscous::new(TRUTH[0], TRUTH[1]).unwrap();

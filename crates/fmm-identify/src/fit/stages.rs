@@ -28,11 +28,11 @@ pub(crate) type Starts<'a> = dyn Fn(&Problem<'_>) -> Vec<Vec<f64>> + Sync + 'a;
 pub(crate) enum Begin<'a> {
     /// Wherever the records say.
     Anywhere,
-    /// At these values, of one problem or of another one that tells the same.
+    /// Start at these values, of one problem or of another one that tells the same.
     From(&'a Starts<'a>),
-    /// At the end of a fit to the same records by a law that lacks some of the parameters, which begin at zero.
+    /// Start at the end of a fit to the same records by a law that lacks some of the parameters, which begin at zero.
     Extended(&'a Fitted),
-    /// At the end of a fit by the same law to the same records without filters in the sensors.
+    /// Start at the end of a fit by the same law to the same records without filters in the sensors.
     Behind(&'a Fitted),
 }
 

@@ -216,7 +216,7 @@ fn moved(problem: &Problem<'_>, near: &Linearised, values: &[f64], step: &[f64],
 }
 
 impl Path {
-    /// Of all records of `problem` by these values.
+    /// Path of all records of `problem` by these values.
     fn of(problem: &Problem<'_>, values: &[f64]) -> Result<Self, EvaluationError> {
         let (mut speeds, mut lowest) = (Vec::new(), Vec::new());
         for (record, experiment) in problem.experiments().iter().enumerate() {

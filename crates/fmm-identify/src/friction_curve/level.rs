@@ -28,7 +28,7 @@ pub struct FrictionLevel {
 const FAR: f64 = 40.0;
 
 impl FrictionLevel {
-    /// Of these `parts` in `unit`, each of Student's t with `freedom`.
+    /// Level as a mixture of these `parts` in `unit`, each of Student's t with `freedom`.
     pub(super) fn new(parts: &[(f64, f64, f64)], freedom: f64, unit: String) -> Self {
         let parts = gathered(parts);
         let mut level = Self { value: 0.0, uncertainty: 0.0, parts, freedom, unit };

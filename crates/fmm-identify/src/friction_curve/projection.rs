@@ -251,8 +251,8 @@ impl Projection<'_> {
         Some(levels)
     }
 
-    /// At all these values the friction is the same while the speed grows and while it falls, and at some of them each
-    /// parameter acts on it: none is of the acceleration, of a dead zone or of an internal state.
+    /// True if a steady motion shows all parameters of the law: at all these values friction is the same for a growing and for a
+    /// falling speed, and at some of them each parameter changes it.
     fn shows_all<'v>(&self, mut all: impl Iterator<Item = &'v [f64]> + Clone) -> bool {
         let is_even = |values: &[f64]| {
             let all = [&vec![0.0; self.table.oscillator], values].concat();

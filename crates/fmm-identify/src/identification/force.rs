@@ -109,7 +109,7 @@ pub(super) struct MotionNoise {
 }
 
 impl MotionNoise {
-    /// That of a `fit` of `problem`; none for vibrations.
+    /// Noise of the motion in a `fit` of `problem`; none for vibrations.
     pub(super) fn of(problem: &Problem<'_>, fit: &Fit) -> Self {
         let Some(forces) = problem.forces() else { return Self::default() };
         let others: Vec<Vec<(f64, ForceRecord)>> = forces.records().iter().map(ForceRecord::along_others).collect();

@@ -1,4 +1,4 @@
-//! The main job: friction parameters of one law out of ring-down records.
+//! Identification: the friction parameters of one law, out of records.
 
 pub(crate) mod beside;
 pub(crate) mod drift;
@@ -56,9 +56,9 @@ pub struct Identification {
     warnings: Vec<Warning>,
     pub(crate) structure: ResidualStructure,
     pub(crate) covariance: Covariance,
-    /// By how many standard uncertainties the linear damping would leave its bound, if it is there.
+    /// Distance (standard uncertainties) by which the linear damping would leave its bound, if it is there.
     pull_at_bound: Option<f64>,
-    /// Of each record, what was fitted beside its motion.
+    /// Disturbances of each record that were fitted beside its motion.
     disturbances: Vec<Vec<Nuisance>>,
     /// Amplitude of the records, or deviation of the forces, in the unit of the residuals.
     amplitude: f64,
@@ -66,8 +66,8 @@ pub struct Identification {
     forces: Option<ForceResults>,
 }
 
-/// By how many standard uncertainties the linear damping would leave the bound that it lies on; `None` if it lies on
-/// none.
+/// Distance (standard uncertainties) by which the linear damping would leave the bound that it lies on; `None` if it
+/// lies on none.
 fn pull_at_bound(problem: &Problem<'_>, fit: &Fit, covariance: &Covariance) -> Option<f64> {
     let index = fit.estimates().iter().position(|estimate| estimate.name() == LINEAR)?;
     fit.estimates()[index].status().is_at_bound().then_some(())?;

@@ -11,12 +11,12 @@ use crate::judgement::rules::LEVEL;
 /// Dependence of friction on the load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LoadVerdict {
-    /// In proportion to the load, within the uncertainty of the runs: F = μ N (Amontons).
+    /// Friction in proportion to the load, within the uncertainty of the runs: F = μ N (Amontons).
     Proportional,
     /// Growing with the load from a level other than zero: F/N depends on the load, and one coefficient does not
     /// describe it.
     Offset,
-    /// Not seen to grow with the load.
+    /// Friction that is not seen to grow with the load.
     Independent,
 }
 
@@ -59,7 +59,8 @@ pub struct FrictionOverLoad {
 }
 
 impl FrictionOverLoad {
-    /// Of at least three runs, each with its normal load and its friction force (N), at two different loads or more.
+    /// Friction over the load by at least three runs, each with its normal load and its friction force (N), at two
+    /// different loads or more.
     ///
     /// # Errors
     /// [`IdentifyError::TooFew`]; [`IdentifyError::OutOfRange`] for a load that is not positive or a number that is not
@@ -174,25 +175,25 @@ impl fmt::Display for FrictionOverLoad {
         match self.verdict() {
             LoadVerdict::Proportional => write!(
                 f,
-                "friction is in proportion to the load between {smallest} N and {largest} N, F = μ N, as far as {} runs tell: \
-                 F₀ + μ N has μ = {coefficient} and F₀ = {intercept} N, zero within its 95 % interval; an F₀ of up to {:.1} % of the \
-                 friction at {smallest} N would not show",
+                "friction is in proportion to the load between {smallest} N and {largest} N, F = μ N, as far as {} \
+                 runs tell: F₀ + μ N has μ = {coefficient} and F₀ = {intercept} N, zero within its 95 % interval; an \
+                 F₀ of up to {:.1} % of the friction at {smallest} N would not show",
                 self.runs,
                 100.0 * self.largest_share()
             ),
             LoadVerdict::Offset => write!(
                 f,
-                "friction is not in proportion to the load: F₀ + μ N has μ = {coefficient} and F₀ = {intercept} N, which is not zero \
-                 (p = {:.1e}) and makes {:.1} % of the friction at {smallest} N; F/N {} with the load, so that no one coefficient holds \
-                 between {smallest} N and {largest} N",
+                "friction is not in proportion to the load: F₀ + μ N has μ = {coefficient} and F₀ = {intercept} N, \
+                 which is not zero (p = {:.1e}) and makes {:.1} % of the friction at {smallest} N; F/N {} with the \
+                 load, so that no one coefficient holds between {smallest} N and {largest} N",
                 self.intercept_p_value(),
                 100.0 * self.intercept().value / self.force(smallest),
                 if self.intercept().value > 0.0 { "falls" } else { "rises" }
             ),
             LoadVerdict::Independent => write!(
                 f,
-                "friction is not seen to grow with the load between {smallest} N and {largest} N: F₀ + μ N has μ = {coefficient}, zero \
-                 within its 95 % interval, and F₀ = {intercept} N"
+                "friction is not seen to grow with the load between {smallest} N and {largest} N: F₀ + μ N has μ = \
+                 {coefficient}, zero within its 95 % interval, and F₀ = {intercept} N"
             ),
         }
     }
@@ -208,7 +209,7 @@ mod tests {
         loads.iter().enumerate().map(run).collect()
     }
 
-    /// Runs whose coefficients differ by turns: the line of forces over loads with weights 1/N², closed form of
+    /// Runs with two coefficients in turn: the line of forces over loads with weights 1/N², closed form of
     /// `StraightLine`.
     #[test]
     fn it_is_the_line_weighted_by_the_load() {

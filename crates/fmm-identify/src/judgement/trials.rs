@@ -134,7 +134,7 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// The same with `terms` that are no friction over the speed, as far as the law takes them.
+    /// The same with a change and a dependence on the position, if these are among `terms` and the law takes them.
     pub(super) fn beside(self, terms: &Terms) -> Self {
         let changing = with_change(&self.candidate).filter(|_| terms.has(Term::Change));
         let candidate = changing.unwrap_or(self.candidate);

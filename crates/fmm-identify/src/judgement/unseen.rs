@@ -116,7 +116,8 @@ impl fmt::Display for Unseen {
                 let word = if falls { "falls" } else { "rises" };
                 return write!(
                     f,
-                    "its residuals ask for friction that {word} by {size:.0} % ± {u:.0} % towards the largest deflection"
+                    "its residuals ask for friction that {word} by {size:.0} % ± {u:.0} % towards the largest \
+                     deflection"
                 );
             }
             _ => {}

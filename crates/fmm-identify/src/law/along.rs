@@ -24,7 +24,7 @@ pub(crate) struct MeasuredMotion {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Alignment<'a, D> {
     pub(crate) motion: &'a MeasuredMotion,
-    /// By how much the force comes later than the motion (s).
+    /// Delay of the force behind the motion (s).
     pub(crate) delay: D,
     /// True with such a delay, known or to be found.
     pub(crate) has_delay: bool,

@@ -35,7 +35,7 @@ pub(crate) struct Powers {
 }
 
 impl Powers {
-    /// Of the unit in which `law` states `parameter`; `None` for one of which it is not known what it scales with.
+    /// Powers in the unit in which `law` states `parameter`; `None` if it is not known how that unit scales.
     fn of(law: &Law, parameter: &LawParameter) -> Option<Self> {
         let exponent = |symbol: &str| {
             let named = |parameter: &&LawParameter| parameter.parameter().symbol() == symbol;
@@ -75,8 +75,8 @@ impl Law {
             let (law, parameter) = (self.name, parameter.parameter());
             Err(IdentifyError::UnknownName {
                 what: format!(
-                    "{law} states {} in {}, and a fit does not know where to begin: a unit is made of m, s, rad and deg, with \
-                     prefixes and powers",
+                    "{law} states {} in {}, and a fit does not know where to begin: a unit is made of m, s, rad and \
+                     deg, with prefixes and powers",
                     parameter.name(),
                     parameter.unit()
                 ),

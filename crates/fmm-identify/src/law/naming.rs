@@ -50,7 +50,7 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// Of a motion with positions in `position` and forces in `force`.
+    /// Units of a motion with positions in `position` and forces in `force`.
     pub(crate) fn new(position: &str, force: &str) -> Self {
         Self { position: Unit::of(position), force: Unit::of(force) }
     }
@@ -94,7 +94,7 @@ impl Units {
         self.position == Unit::of("m")
     }
 
-    /// A parameter of a law with its levels in this `form`, and the lengths of the record in place of m.
+    /// Parameter of a law as a report states it: a level in this `form`, and lengths in the unit of the record instead of m.
     pub(crate) fn stated(&self, law_parameter: &LawParameter, form: Form) -> Parameter {
         self.named(law_parameter, false, form)
     }

@@ -168,18 +168,20 @@ impl Terms {
     pub(crate) fn require_force(&self) -> Result<(), IdentifyError> {
         if self.has_spring() {
             return Err(IdentifyError::contradiction(
-                "a spring that is not linear is a term of free vibrations; a force along a motion takes the term stiffness",
+                "a spring that is not linear is a term of free vibrations; a force along a motion takes the term \
+                 stiffness",
             ));
         }
         if self.has(Term::Change) || self.has(Term::Position) {
             return Err(IdentifyError::contradiction(
-                "a friction that changes during the record or over the position is a term of vibrations; cut a force along \
-                 a motion into parts",
+                "a friction that changes during the record or over the position is a term of vibrations; cut a force \
+                 along a motion into parts",
             ));
         }
         if self.has(Term::PowerDamping) {
             return Err(IdentifyError::contradiction(
-                "damping with a free power is a term of free vibrations; a force along a motion takes the law power_law",
+                "damping with a free power is a term of free vibrations; a force along a motion takes the law \
+                 power_law",
             ));
         }
         Ok(())

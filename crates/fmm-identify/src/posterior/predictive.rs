@@ -80,8 +80,8 @@ impl PredictiveCheck {
         let side = if self.p_value() < 0.5 { "above" } else { "below" };
         self.is_surprising().then(|| {
             format!(
-                "the measured {} lies {side} that of nearly all records from the posterior (p = {:.3}): the model misses something that \
-                 it shows",
+                "the measured {} lies {side} that of nearly all records from the posterior (p = {:.3}): the model \
+                 misses something that it shows",
                 self.feature,
                 self.p_value()
             )

@@ -55,7 +55,8 @@ impl IdentificationPosterior {
                 .to_owned()
         } else {
             format!(
-                "the intervals of {} differ by more than a tenth of their width: state those of the posterior there, and not value ± u",
+                "the intervals of {} differ by more than a tenth of their width: state those of the posterior there, \
+                 and not value ± u",
                 apart.join(", ")
             )
         }

@@ -21,7 +21,7 @@ use crate::threads::Pool;
 #[derive(Debug, Clone)]
 pub(crate) struct Forces<'a> {
     pub(super) records: &'a [ForceRecord],
-    /// Of each record the samples that are compared: those whose motion was measured, for every delay.
+    /// Samples of each record that are compared: those whose motion was measured, whatever the delay.
     pub(crate) samples: Vec<Range<usize>>,
     /// Index of the first shape, behind the rows of the law. A shape is a term that is one factor times a measured
     /// series.

@@ -200,7 +200,7 @@ impl Inputs<'_> {
 pub(crate) struct Derived {
     pub(crate) parameter: Parameter,
     pub(crate) value: f64,
-    /// By the shared values, then by scale, normal load, gain of the instrument and gain of a measured force.
+    /// Derivatives by the shared values, then by scale, normal load, gain of the instrument and gain of a measured force.
     pub(crate) gradient: Vec<f64>,
 }
 

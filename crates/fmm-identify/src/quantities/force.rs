@@ -19,8 +19,8 @@ fn require_timeless(candidate: &Candidate) -> Result<(), IdentifyError> {
     let Candidate { law, terms } = candidate;
     let needs = |what: &str| {
         IdentifyError::contradiction(format!(
-            "{what} depends on time or position, of which steady states have none; take a law of the speed, damping and zero, \
-             or give the times"
+            "{what} depends on time or position, of which steady states have none; take a law of the speed, damping \
+             and zero, or give the times"
         ))
     };
     if !law.is_of_speed() {

@@ -325,8 +325,8 @@ impl Table {
         }
         if (terms.has(Term::Change) || terms.has(Term::Position)) && !family.is_of_speed() {
             return Err(IdentifyError::contradiction(format!(
-                "{} has an internal state; friction that changes during the record or over the position takes a law of the \
-                 sliding speed",
+                "{} has an internal state; friction that changes during the record or over the position takes a law of \
+                 the sliding speed",
                 family.name
             )));
         }

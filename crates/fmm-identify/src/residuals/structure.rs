@@ -52,7 +52,7 @@ impl ResidualStructure {
         Self { residual, noise: noise.max(rounding), rounding, autocorrelation_time, has_lines: false }
     }
 
-    /// More is left than the rounding of doubles.
+    /// True if more is left than the rounding of doubles.
     pub(crate) fn is_noisy(&self) -> bool {
         self.residual > self.rounding
     }

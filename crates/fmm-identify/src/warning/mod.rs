@@ -111,7 +111,7 @@ pub enum Warning {
     OffsetStep {
         /// When (s).
         time: f64,
-        /// By how much, in the unit of the record.
+        /// Height of the step, in the unit of the record.
         height: f64,
         /// Unit of the record.
         unit: String,
@@ -273,7 +273,7 @@ pub enum Warning {
     GrowingNoise {
         /// Standard deviation of the noise without a signal, in the unit of the record.
         floor: f64,
-        /// By how much of the signal it grows (1).
+        /// Share of the signal by which it grows (1).
         share: f64,
         /// Unit of the record.
         unit: String,
@@ -325,7 +325,7 @@ pub enum Warning {
     Overload {
         /// Number of the trial, from 1.
         trial: usize,
-        /// Of which channel.
+        /// Channel that is meant.
         channel: Channel,
         /// Number of samples.
         samples: usize,
@@ -380,8 +380,8 @@ impl fmt::Display for Warning {
             }
             Self::StructuredResiduals { residual, noise, unit, inflation } => write!(
                 f,
-                "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of noise \
-                 between samples, and neighbours are alike; the law leaves something out, and the standard \
+                "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of \
+                 noise between samples, and neighbours are alike; the law leaves something out, and the standard \
                  uncertainties take it for noise{}",
                 if *inflation > 1.05 {
                     format!(", {inflation:.1} times as large as if it were white")
@@ -392,8 +392,9 @@ impl fmt::Display for Warning {
             Self::PeriodDependsOnAmplitude { change } => write!(
                 f,
                 "the period changes by {:+.2} % as the amplitude falls: the amplitude is too large for a linear spring \
-                 (a pendulum, whose restoring force is a sine, or a spring that hardens, softens or meets a stop); take it for a pendulum, or fit \
-                 the spring (law + cubic spring, or law + stop), or use a part of smaller amplitude",
+                 (a pendulum, whose restoring force is a sine, or a spring that hardens, softens or meets a stop); \
+                 take it for a pendulum, or fit the spring (law + cubic spring, or law + stop), or use a part of \
+                 smaller amplitude",
                 100.0 * change
             ),
             Self::Implausible { number, remedy } => write!(f, "no machine has {number}: {remedy}"),
@@ -405,7 +406,8 @@ impl fmt::Display for Warning {
             ),
             Self::Saturated { count } => write!(
                 f,
-                "{count} samples lie on the end of the range, as if clipped; they were fitted as they are, which biases the amplitude"
+                "{count} samples lie on the end of the range, as if clipped; they were fitted as they are, which \
+                 biases the amplitude"
             ),
             Self::OffsetStep { time, height, unit } => {
                 write!(
@@ -418,7 +420,8 @@ impl fmt::Display for Warning {
                 let value = Rounded::new(*value, None);
                 write!(
                     f,
-                    "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for that value"
+                    "{parameter} ended on its bound {value}; it has no standard uncertainty, and the others hold for \
+                     that value"
                 )
             }
             Self::Inseparable { sentence } | Self::NotConverged { sentence } => f.write_str(sentence),
@@ -427,8 +430,8 @@ impl fmt::Display for Warning {
             }
             Self::NarrowStop { margin, time } => write!(
                 f,
-                "at {time:.3} s the load is within {:.2} % of the static level: a small change would add or remove a half swing, \
-                 which the uncertainties do not see",
+                "at {time:.3} s the load is within {:.2} % of the static level: a small change would add or remove a \
+                 half swing, which the uncertainties do not see",
                 100.0 * margin.abs()
             ),
             Self::StaticLevelHeld { parameter } => {
@@ -441,14 +444,14 @@ impl fmt::Display for Warning {
             Self::LeftOut { subject, reason } => write!(f, "{subject} took no part in the judgement: {reason}"),
             Self::NegativeDamping { law, parameter, value, unit } => write!(
                 f,
-                "{law}: {parameter} is negative, {value:.4} {unit}: no damper feeds the motion; it stands for friction that falls with \
-                 speed, so try a law that does (berger, stribeck) in its place"
+                "{law}: {parameter} is negative, {value:.4} {unit}: no damper feeds the motion; it stands for friction \
+                 that falls with speed, so try a law that does (berger, stribeck) in its place"
             ),
             Self::Misled { law, friction, preferred, residuals } => write!(
                 f,
-                "{law} alone would have put the friction at rest at {} in place of the {} of the \
-                 preferred law: with friction that changes with speed, a level and a straight line share the losses of large \
-                 swings and miss those of small ones (its residuals are {residuals:.1} times larger)",
+                "{law} alone would have put the friction at rest at {} in place of the {} of the preferred law: with \
+                 friction that changes with speed, a level and a straight line share the losses of large swings and \
+                 miss those of small ones (its residuals are {residuals:.1} times larger)",
                 to_three_digits(*friction),
                 to_three_digits(*preferred)
             ),

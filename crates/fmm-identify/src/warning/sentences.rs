@@ -14,8 +14,8 @@ fn limit_of_unit(unit: &str) -> &'static str {
     if unit.starts_with("rad") {
         "a normal load makes a coefficient mu of the torque over its radius alone"
     } else {
-        "no mass in kg makes a friction force in N of it, and no normal load a coefficient mu; give the scale of the instrument \
-         in metres"
+        "no mass in kg makes a friction force in N of it, and no normal load a coefficient mu; give the scale of the \
+         instrument in metres"
     }
 }
 
@@ -26,15 +26,15 @@ impl Warning {
         match self {
             Self::FrictionChanges { law } => write!(
                 f,
-                "the residuals of {law} ask for friction that changes during the record (wear, running in, warming, a load \
-                 that varies), or for another law: fit the change (law + change, with + linear for a viscous part that \
-                 stays), give the damping of the machine, or use a shorter part"
+                "the residuals of {law} ask for friction that changes during the record (wear, running in, warming, a \
+                 load that varies), or for another law: fit the change (law + change, with + linear for a viscous part \
+                 that stays), give the damping of the machine, or use a shorter part"
             ),
             Self::FrictionOverPosition { law } => write!(
                 f,
-                "the residuals of {law} ask for friction that depends on the position (a load that a flexure changes as it \
-                 deflects, a track that is not even), or for another law: fit it (law + position, with + linear for a \
-                 viscous part), or give the damping of the machine"
+                "the residuals of {law} ask for friction that depends on the position (a load that a flexure changes \
+                 as it deflects, a track that is not even), or for another law: fit it (law + position, with + linear \
+                 for a viscous part), or give the damping of the machine"
             ),
             _ => self.write_of_disturbances(f),
         }
@@ -58,23 +58,26 @@ impl Warning {
             }
             Self::Interrupted { time, ratio } => write!(
                 f,
-                "something else than the machine takes its motion after {time:.3} s: the next half swing loses {ratio:.0} times as much as \
-                 those before it; only the part before was used; give --to to say otherwise"
+                "something else than the machine takes its motion after {time:.3} s: the next half swing loses \
+                 {ratio:.0} times as much as those before it; only the part before was used; give --to to say \
+                 otherwise"
             ),
             Self::SecondMode { frequency, share } => write!(
                 f,
-                "a second mode vibrates at {frequency:.3} Hz with about {:.0} % of the amplitude; the fit knows one mode only: use a \
-                 part in which one is left, or isolate one (`--mode` of `fmm identify`, `IsolatedMode` of fmm-frf)",
+                "a second mode vibrates at {frequency:.3} Hz with about {:.0} % of the amplitude; the fit knows one \
+                 mode only: use a part in which one is left, or isolate one (`--mode` of `fmm identify`, \
+                 `IsolatedMode` of fmm-frf)",
                 100.0 * share
             ),
             Self::Hum { frequency, amplitude, unit } => write!(
                 f,
-                "a hum of {amplitude:.2e} {unit} at {frequency:.3} Hz goes on through the record; it was fitted beside the motion"
+                "a hum of {amplitude:.2e} {unit} at {frequency:.3} Hz goes on through the record; it was fitted beside \
+                 the motion"
             ),
             Self::Rounded { step, unit } => write!(
                 f,
-                "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise; what follows the last turning \
-                 point was left out, as what swings within a step is rounded to another motion"
+                "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise; what follows \
+                 the last turning point was left out, as what swings within a step is rounded to another motion"
             ),
             Self::Drift => {
                 write!(
@@ -84,13 +87,13 @@ impl Warning {
             }
             Self::KnowledgeContradicted { parameter, distance } => write!(
                 f,
-                "the records move {parameter} by {distance:.1} standard uncertainties from the value that was given: that value, \
-                 its uncertainty or the law is wrong"
+                "the records move {parameter} by {distance:.1} standard uncertainties from the value that was given: \
+                 that value, its uncertainty or the law is wrong"
             ),
             Self::GrowingNoise { floor, share, unit } => write!(
                 f,
-                "the noise grows with the signal, from {floor:.1e} {unit} by {:.1} % of it; the standard uncertainties take that into \
-                 account",
+                "the noise grows with the signal, from {floor:.1e} {unit} by {:.1} % of it; the standard uncertainties \
+                 take that into account",
                 100.0 * share
             ),
             Self::ColouredNoise { is_correlated, time, ratio, inflation } => {
@@ -101,15 +104,16 @@ impl Warning {
                 }
                 write!(
                     f,
-                    ": the noise is not white (a filter in the instrument, rounding, a fast vibration), or the law leaves a little out; \
-                     the standard uncertainties take that into account"
+                    ": the noise is not white (a filter in the instrument, rounding, a fast vibration), or the law \
+                     leaves a little out; the standard uncertainties take that into account"
                 )?;
                 if *inflation > NOTABLE { write!(f, " (by up to a factor of {inflation:.1})") } else { Ok(()) }
             }
             Self::FilteringSensor { law, corner, uncertainty } => write!(
                 f,
-                "a sensor that filters explains the record as well: by {law} with a low-pass filter of second order at {} Hz, which rounds \
-                 the motion where it reverses and looks like friction; state the filter of the sensor, or let it be fitted",
+                "a sensor that filters explains the record as well: by {law} with a low-pass filter of second order at \
+                 {} Hz, which rounds the motion where it reverses and looks like friction; state the filter of the \
+                 sensor, or let it be fitted",
                 Rounded::new(*corner, Some(*uncertainty))
             ),
             Self::OtherQuantity { quantity, declared, law } => write!(
@@ -119,8 +123,9 @@ impl Warning {
             ),
             Self::Beginning { law, time } => write!(
                 f,
-                "the beginning of the record is not described: without its first {time:.2} s {law} explains the rest; a sensor that \
-                 filters or is late, or a release that is not free, makes such a beginning: state the sensor, or begin later"
+                "the beginning of the record is not described: without its first {time:.2} s {law} explains the rest; \
+                 a sensor that filters or is late, or a release that is not free, makes such a beginning: state the \
+                 sensor, or begin later"
             ),
             Self::NotSi { unit } => write!(f, "the record is in {unit}: {}", limit_of_unit(unit)),
             Self::DependsOnLaw { parameter, law, finding } => write!(
@@ -130,11 +135,13 @@ impl Warning {
             ),
             Self::TimeLimit => write!(
                 f,
-                "the time that was given ended before all laws were tried; what is reported is the best of those that were"
+                "the time that was given ended before all laws were tried; what is reported is the best of those that \
+                 were"
             ),
             Self::Undecided => write!(
                 f,
-                "the record does not decide between the laws that are left; the simplest of those that agree well with it is shown as preferred"
+                "the record does not decide between the laws that are left; the simplest of those that agree well with \
+                 it is shown as preferred"
             ),
             _ => self.write_of_forces(f),
         }
@@ -145,8 +152,9 @@ impl Warning {
         match self {
             Self::DrivesMotion { friction, unit } => write!(
                 f,
-                "the force drives the motion: turn its sign (`--turn-sign` of `fmm force`, `ForceRecord::with_turned_sign`); \
-                 in the mean of the way friction would be {} {unit}, and no friction is negative",
+                "the force drives the motion: turn its sign (`--turn-sign` of `fmm force`, \
+                 `ForceRecord::with_turned_sign`); in the mean of the way friction would be {} {unit}, and no friction \
+                 is negative",
                 to_three_digits(*friction)
             ),
             Self::WorseThanNone { law, share, is_fitted } => {
@@ -164,7 +172,8 @@ impl Warning {
             Self::NoisyMotion { quantity, share, samples, parameters } => write!(
                 f,
                 "the measured {quantity} has noise of {} of its deviation, which was averaged over {samples} samples; \
-                 what is left of it, and what averaging takes from the motion, is most of the uncertainty of {parameters}",
+                 what is left of it, and what averaging takes from the motion, is most of the uncertainty of \
+                 {parameters}",
                 if *share < 1e-4 { format!("{share:.0e}") } else { format!("{} %", to_three_digits(100.0 * share)) }
             ),
             Self::CoarseMotion { parameters } => write!(
@@ -185,31 +194,32 @@ impl Warning {
         match self {
             Warning::FurtherHit { trial, time, share } => write!(
                 f,
-                "trial {trial}: the hammer hit again at {time:.4} s with {:.0} % of the force; the fit follows both, but the spectrum \
-                 of the force has holes, so better repeat the trial",
+                "trial {trial}: the hammer hit again at {time:.4} s with {:.0} % of the force; the fit follows both, \
+                 but the spectrum of the force has holes, so better repeat the trial",
                 100.0 * share
             ),
             Warning::Overload { trial, channel, samples } => write!(
                 f,
-                "trial {trial}: {samples} samples of the {channel} lie on the end of the range, as if clipped; they were fitted as they \
-                 are, which biases the friction"
+                "trial {trial}: {samples} samples of the {channel} lie on the end of the range, as if clipped; they \
+                 were fitted as they are, which biases the friction"
             ),
             Warning::CoarsePulse { trial, intervals, error } => write!(
                 f,
-                "trial {trial}: the pulse has {intervals} intervals only; by where its samples lie, straight lines between them make \
-                 the impulse of a half sine up to {:.1} % too small, and a closed form with it: sample faster (the fit takes the \
-                 impulse from the motion as well)",
+                "trial {trial}: the pulse has {intervals} intervals only; by where its samples lie, straight lines \
+                 between them make the impulse of a half sine up to {:.1} % too small, and a closed form with it: \
+                 sample faster (the fit takes the impulse from the motion as well)",
                 100.0 * error
             ),
             Warning::SpikesBridged { trial, samples } => write!(
                 f,
-                "trial {trial}: {samples} isolated samples of the velocity far off their neighbours were bridged by straight lines"
+                "trial {trial}: {samples} isolated samples of the velocity far off their neighbours were bridged by \
+                 straight lines"
             ),
             Warning::NotAtRest { trial, recorded, lost } => write!(
                 f,
-                "trial {trial}: the record ends after {recorded:.2} s of motion, before rest: a peak read off the spectrum is {:.0} % \
-                 too low, while the fit ends with the record; the offset of the velocity rests on the samples before the blow alone, \
-                 and only the friction of that part shows",
+                "trial {trial}: the record ends after {recorded:.2} s of motion, before rest: a peak read off the \
+                 spectrum is {:.0} % too low, while the fit ends with the record; the offset of the velocity rests on \
+                 the samples before the blow alone, and only the friction of that part shows",
                 100.0 * lost
             ),
             _ => Ok(()),

@@ -1,4 +1,4 @@
-//! What planned tests would tell, against fits of simulated ones and closed forms.
+//! Predictions of planned tests, against fits of simulated ones and closed forms.
 
 use std::f64::consts::TAU;
 

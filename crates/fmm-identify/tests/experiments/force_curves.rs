@@ -1,4 +1,4 @@
-//! What a force along a motion shows without a law: friction over the speed, loops, onsets of sliding.
+//! Force along a motion without a law: friction over the speed, loops, onsets of sliding.
 
 use fmm_identify::ForceRecord;
 use rand_chacha::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! What makes a finding uncertain, against closed forms.
+//! Sources of the uncertainty of a finding, against closed forms.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! How often 95 % intervals contain the truth.
+//! Coverage: 95 % intervals contain the truth as often as they say.
 
 use fmm_fit::{Fit, Options, Residuals, solve};
 use fmm_friction::{AccelerationCoulomb, Berger, Coulomb, LawFamily, Stribeck};

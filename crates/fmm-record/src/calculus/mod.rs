@@ -95,7 +95,7 @@ pub(crate) fn averaged(values: &[f64], half: usize, ends: EndRule) -> Vec<f64> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Smoothing {
-    /// Not at all.
+    /// No smoothing.
     #[default]
     None,
     /// Moving average, centred.

@@ -19,7 +19,8 @@ pub(super) fn sliding(
     }
     if degree >= span || degree > HIGHEST_DEGREE {
         return Err(RecordError::options(format!(
-            "the degree of a smoothing polynomial must be below its span and at most 8, but is {degree} for {span} samples"
+            "the degree of a smoothing polynomial must be below its span and at most 8, but is {degree} for {span} \
+             samples"
         )));
     }
     if values.len() < span {

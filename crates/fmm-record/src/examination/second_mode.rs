@@ -194,7 +194,7 @@ fn points<const P: usize>(heights: &[f64], functions: impl Fn(f64, f64) -> [f64;
 struct Modulation {
     /// Cycles per half cycle.
     nu: f64,
-    /// Of the height (1).
+    /// Depth of the modulation, as a share of the height (1).
     share: f64,
     /// Sum of the squared residuals, and without the modulation.
     residuals: (f64, f64),

@@ -28,7 +28,7 @@ struct Segment {
     /// Its middle (samples).
     time: f64,
     amplitude: f64,
-    /// Of a cosine at the first sample of the record, if the frequency is right (rad).
+    /// Phase of a cosine at the first sample of the record, if the frequency is right (rad).
     phase: f64,
     /// Standard deviation of the amplitude.
     scatter: f64,

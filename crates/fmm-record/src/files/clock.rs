@@ -119,7 +119,8 @@ impl Clock {
         match &self.unit {
             Written::Other(unit) if !self.is_counter => {
                 let what = format!(
-                    "the time stamps \"{name}\" are in \"{unit}\", which is no unit of time that is known; give the sampling rate"
+                    "the time stamps \"{name}\" are in \"{unit}\", which is no unit of time that is known; give the \
+                     sampling rate"
                 );
                 return Err(RecordError::time(None, what));
             }

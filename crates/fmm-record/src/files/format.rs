@@ -145,7 +145,7 @@ const OTHERS: [(&[u8], &str); 24] = [
     (b"<html", DOCUMENT),
 ];
 
-/// Beginnings of texts in which Octave has one array below another.
+/// First lines of texts of Octave, which have one array below another.
 const OF_OCTAVE: [&[u8]; 2] = [b"# Created by Octave", b"# Octave"];
 
 const ARCHIVE: &str = "a ZIP archive in an archive; unpack it";

@@ -38,7 +38,7 @@ impl From<&Reading> for Label {
 #[cfg(any(feature = "mat", feature = "npy", feature = "gzip", feature = "workbook"))]
 pub(crate) const MOST_INFLATED: usize = 1 << 28;
 
-/// More than that.
+/// Error of a file whose data expand to more.
 #[cfg(any(feature = "mat", feature = "npy", feature = "gzip", feature = "workbook"))]
 pub(crate) fn too_large() -> RecordError {
     RecordError::damaged(format!("the variables of the file expand to more than {MOST_INFLATED} bytes"))
@@ -59,9 +59,9 @@ pub(crate) fn too_large() -> RecordError {
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Column {
-    /// By name.
+    /// Column by its name.
     Name(String),
-    /// By position, counted from 0.
+    /// Column by its position, counted from 0.
     Index(usize),
 }
 

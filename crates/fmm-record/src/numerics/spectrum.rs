@@ -15,7 +15,7 @@ use crate::error::RecordError;
 /// X_k = Σ_j x_j e^{−2πi jk/n},   0 ≤ k ≤ n/2
 /// ```
 ///
-/// Of `realfft`, and compiled once for all crates that transform: its plans are generic, and each crate that made its
+/// Transform of `realfft`, compiled once for all crates that transform: its plans are generic, and each crate that made its
 /// own would compile every algorithm of it again, half a minute each. It is planned once for as many records as have
 /// that length, and copies share the plan. Any length will do, but primes are slow.
 ///
@@ -148,8 +148,8 @@ impl Spectrum {
         Self { squares, spacing: values.len() as f64 / length as f64 }
     }
 
-    /// The place of the peak at `k`, between frequencies, in units of 1/duration: by the parabola through the
-    /// logarithms of three of them, which a line in this window nearly is.
+    /// The place of the peak near line `k`, in units of 1/duration: the vertex of the parabola through the logarithms of
+    /// three lines. In this window the logarithm of a peak is nearly a parabola.
     pub fn refined(&self, k: usize) -> f64 {
         let log = |k: usize| self.squares.get(k).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE).ln();
         let (before, at, after) = (log(k.saturating_sub(1)), log(k), log(k + 1));

@@ -201,9 +201,8 @@ fn behind_slash(bare: &str) -> Option<WrittenUnit> {
 }
 
 /// Units that a suffix or a last word may be, in small letters.
-const SUFFIXES: &str = "\
-    mm um µm μm micron microns rad mrad urad deg ° mdeg degrees radians rpm dps mdps mps kph kmh mph lbf lb lbs klbf kip kips \
-    volts volt counts count ticks lsb cts";
+const SUFFIXES: &str = "mm um µm μm micron microns rad mrad urad deg ° mdeg degrees radians rpm dps mdps mps kph kmh \
+    mph lbf lb lbs klbf kip kips volts volt counts count ticks lsb cts";
 
 /// Suffixes that are a unit behind a word for its quantity only: they may be a medium, a mass centre, a measured value.
 const DOUBTFUL: &str = "m cm km g mg ft";

@@ -170,8 +170,8 @@ impl Request {
         let channel = label.name();
         let Some(quantity) = self.quantity.or_else(|| label.quantity()) else {
             let what = format!("channel \"{channel}\" has neither a unit nor a name that tells what it measured");
-            let remedy = "give `quantity` velocity, displacement or acceleration, and `unit`, with `scale` if the numbers \
-                          are not in it";
+            let remedy = "give `quantity` velocity, displacement or acceleration, and `unit`, with `scale` if the \
+                          numbers are not in it";
             return Err(RecordError::unclear(what, remedy));
         };
         if let Some(stated) = label.stated_quantity().filter(|stated| *stated != quantity) {
@@ -313,9 +313,8 @@ mod tests {
         assert!(
             matches!(refusal(&nothing().scale(f64::NAN), "v [mm/s]"), Contradiction { remedy, .. } if remedy == alone)
         );
-        assert!(
-            matches!(refusal(&nothing().scale(1.0).quantity(Velocity), "v [V]"), Contradiction { remedy, .. } if remedy == alone)
-        );
+        assert!(matches!(refusal(&nothing().scale(1.0).quantity(Velocity), "v \
+                [V]"), Contradiction { remedy, .. } if remedy == alone));
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub(super) struct Field<'a, D, L: ?Sized> {
     pub(super) linear_damping: Option<D>,
     mirrored: Vec<D>,
     rate: Vec<D>,
-    /// Rates that the Jacobian compares with.
+    /// Rates at the point from which the differences of the Jacobian are taken.
     centre: Vec<f64>,
     /// True for each state whose rate has a corner at zero.
     bends: Vec<bool>,

@@ -6,7 +6,7 @@ use crate::error::SimulationError;
 use crate::mechanics::{Curve, Piece, ROUNDING, SEARCH_BUDGET, Spring};
 use crate::scenario::{Direction, State};
 
-/// What a level of friction exceeds the load by, along a motion of constant velocity.
+/// Excess of a level of friction over the load, along a motion of constant velocity.
 ///
 /// ```text
 /// r(τ) = F + F′ τ − s L(τ),   L = f(t + τ) − F_c(v) − F_k(x + v τ)
@@ -14,7 +14,7 @@ use crate::scenario::{Direction, State};
 pub(crate) struct SteadyReserve<'a, D> {
     pub(crate) oscillator: &'a Oscillator<D>,
     pub(crate) piece: &'a Piece<D>,
-    /// t, begin of the motion (s), and the state then.
+    /// t, beginning of the motion (s), and the state then.
     pub(crate) time: f64,
     pub(crate) state: State<f64>,
     /// F and F′, the level (N) and its slope (N/s).

@@ -15,9 +15,9 @@ use crate::trajectory::{Engine, Trajectory};
 /// The force (N) on the machine over one step: a straight line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Force<D = f64> {
-    /// At the beginning (N).
+    /// Force at the beginning (N).
     pub begin: D,
-    /// At the end (N).
+    /// Force at the end (N).
     pub end: D,
 }
 

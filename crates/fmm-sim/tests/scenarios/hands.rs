@@ -1,4 +1,4 @@
-//! What makes a scenario short to write.
+//! Short ways to write a scenario.
 
 use fmm_friction::{Coulomb, Dahl, LawError, Stribeck};
 use fmm_model::{Dual, Oscillator, Scalar};

@@ -12,7 +12,7 @@ pub enum RandomEffects {
     /// The variance at which the weighted squares have their expectation, Q(τ²) = p − 1 (Mandel and Paule 1970).
     #[default]
     MandelPaule,
-    /// From Q and the weights without it (DerSimonian and Laird 1986).
+    /// Formula by Q and the weights without τ² (DerSimonian and Laird 1986).
     DerSimonianLaird,
 }
 
@@ -353,7 +353,7 @@ fn weight_between(results: &[Estimated]) -> f64 {
     weights().zip(behind).map(share).sum()
 }
 
-/// τ² with Q(τ²) = `freedom`; 0 if Q is less without it. Q falls and is convex, so that Newton's steps from 0 do not
+/// τ² with Q(τ²) = `freedom`; 0 if Q(0) is less already. Q falls and is convex, so that Newton's steps from 0 do not
 /// pass the solution.
 fn mandel_paule(results: &[Estimated], freedom: f64) -> f64 {
     let mut variance = 0.0;

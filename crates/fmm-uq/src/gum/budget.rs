@@ -412,9 +412,8 @@ mod tests {
         let budget = propagate(&flat, |x| x[0] * x[0] + x[1] * x[1]).unwrap();
         assert!((budget.linearisation() == Linearisation::ZeroUncertainty));
         assert_eq!((budget.standard_uncertainty(), budget.effective_degrees_of_freedom()), (0.0, None));
-        assert!(
-            matches!(budget.expanded(0.95), Err(UncertaintyError::NoAnswer { what }) if what.contains("linear approximation"))
-        );
+        assert!(matches!(budget.expanded(0.95), Err(UncertaintyError::NoAnswer { what }) if what.contains("linear \
+                approximation")));
         assert!(budget.to_string().contains("linear approximation"), "{budget}");
     }
 

@@ -13,11 +13,11 @@ const ROUNDINGS: f64 = 16.0;
 /// Distance of an output from its expansion, along all directions together.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Departure {
-    /// Of the mean (unit of the output).
+    /// Departure of the mean (unit of the output).
     pub(crate) mean: f64,
-    /// Of the variance (square of the unit).
+    /// Departure of the variance (square of the unit).
     pub(crate) variance: f64,
-    /// By how much the output itself moved at most (unit of the output), roundings not counted.
+    /// Largest move of the output itself (unit of the output), roundings not counted.
     pub(crate) moved: f64,
 }
 

@@ -12,9 +12,9 @@ use crate::inputs::observations::Observations;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Evaluation {
-    /// From a series of observations.
+    /// Evaluation by a series of observations.
     TypeA,
-    /// From anything else: a certificate, limits, experience.
+    /// Evaluation by anything else: a certificate, limits, experience.
     #[default]
     TypeB,
 }

@@ -29,7 +29,7 @@ pub(crate) struct Sampler {
 struct Independent {
     input: usize,
     distribution: Distribution,
-    /// For a normal or t-distributed input: its standardised distribution, its mean and its scale.
+    /// Standardised distribution, mean and scale of a normal or t-distributed input.
     bell: Option<(Arc<Ziggurat>, (f64, f64))>,
 }
 

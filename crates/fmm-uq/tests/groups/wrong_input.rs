@@ -1,4 +1,4 @@
-//! What cannot be, and what is at the edge of it.
+//! Wrong input, and input at the edge of it.
 
 use fmm_model::Estimated;
 use fmm_uq::{AnalysisOfVariance, Consensus, Precision, RandomEffects, UncertaintyError};

@@ -1,4 +1,4 @@
-//! What the adaptive procedure promises, against results that are known.
+//! Promises of the adaptive procedure, against known results.
 
 use fmm_uq::{Adaptive, Distribution, Input, Inputs, IntervalKind, MonteCarlo, OutputSample, UncertaintyError};
 

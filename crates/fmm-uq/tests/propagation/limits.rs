@@ -1,4 +1,4 @@
-//! What has no number is not given one: figures that do not exist, runs beyond their cap, ranges where a method ends.
+//! Limits of a method: figures that do not exist, runs beyond their cap, ranges where a method ends.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -1,4 +1,4 @@
-//! What is printed: budgets as a laboratory shows them, statements, distributions.
+//! Printed text: budgets as a laboratory shows them, statements, distributions.
 
 use fmm_uq::{
     Adaptive, Distribution, Evaluation, Input, Inputs, IntervalKind, MonteCarlo, Observations, Scalar, Taylor,

@@ -1,4 +1,4 @@
-//! What a free vibration tells of mass, stiffness and damping, and what not.
+//! Mass, stiffness and damping as far as a free vibration tells them.
 
 use fmm_fit::{Estimate, Fit, Options, Residuals as _, solve};
 use fmm_model::{Damping, Oscillator};

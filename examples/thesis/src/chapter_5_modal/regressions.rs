@@ -1,4 +1,4 @@
-//! What follows from the numbers that are printed.
+//! Regressions over the printed numbers.
 
 use fmm_fit::{StraightLine, Weighting};
 use fmm_model::Oscillator;

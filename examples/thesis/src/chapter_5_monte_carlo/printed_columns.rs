@@ -1,4 +1,4 @@
-//! What the columns of Table 3 are, by arithmetic alone.
+//! Meaning of the columns of Table 3, by arithmetic alone.
 
 use super::computed::Computed;
 use crate::printed::{MACHINE_DEVIATIONS, TABLE_3};

@@ -1,4 +1,4 @@
-//! What stands at the odd multiples of the natural frequency: Fig. 42.
+//! Lines at the odd multiples of the natural frequency: Fig. 42.
 
 use std::f64::consts::TAU;
 

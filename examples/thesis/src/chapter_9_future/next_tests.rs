@@ -1,4 +1,4 @@
-//! Which tests would have told more: the thesis' own ring-downs as a plan.
+//! Tests that would have told more: the thesis' own ring-downs as a plan.
 
 use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
 use fmm_model::Oscillator;

@@ -124,7 +124,8 @@ fn three_loads(home: &Path) -> [PathBuf; 2] {
         let (operator, temperature) = (["A", "B"][run % 2], 20 + run);
         csv.extend([format!("run_{run:02}.csv,10,0.01,{load},mm/s,{operator},{temperature}\n")]);
         toml.extend([format!(
-            "[[record]]\nfile = \"run_{run:02}.csv\"\nnormal_load = {load}\noperator = \"{operator}\"\ntemperature = {temperature}\n"
+            "[[record]]\nfile = \"run_{run:02}.csv\"\nnormal_load = {load}\noperator = \"{operator}\"\ntemperature = \
+             {temperature}\n"
         )]);
     }
     toml += "[sheet]\nmoving_material = \"steel\"\nnormal_load = \"dead weight\"\n[sheet.further]\ngrease_batch = 7\n";

@@ -109,7 +109,8 @@ fn wrong_values_are_answered_with_what_would_be_right() {
         (with(""), "cannot be read"),
         (r#"{"oscillator": {"mass": 1, "stiffness": 1}}"#.to_owned(), "needs a duration"),
         (r#"{"oscillator": {"mass": 1}, "duration": 1}"#.to_owned(), "missing field `stiffness`"),
-        (r#"{"oscillator": {"mass": -1, "stiffness": 1}, "duration": 1}"#.to_owned(), "mass must be positive and finite, but is -1 kg"),
+        (r#"{"oscillator": {"mass": -1, "stiffness": 1}, "duration": 1}"#.to_owned(), "mass must be positive and \
+            finite, but is -1 kg"),
         (r#"{"oscillator": {"mass": 1, "stiffness": 1, "damping": {"linear": 1, "peak_velocity_line": {"intercept": 1, "slope": 1}}}, "duration": 1}"#.to_owned(), "not by both ways"),
         (r#"{"oscillator": {"mass": 1, "stiffness": 1, "restoring": {"sine": {"length": 0}}}, "duration": 1}"#.to_owned(), "must be positive"),
         (with(r#""duration": 0"#), "duration must be positive"),
@@ -124,13 +125,16 @@ fn wrong_values_are_answered_with_what_would_be_right() {
         (with(r#""duration": 1e300, "output": {"rate": 1e300}"#), "samples were asked for"),
         (with(r#""duration": 1e300, "output": {"rate": 1}"#), "1e300 samples were asked for"),
         (with(r#""duration": 1, "engine": "runge_kutta", "tolerance": 1e-30"#), "but is 1e-30"),
-        (with(r#""duration": 1, "excitation": [{"half_sine": {"peak": 1, "duration": 0}}]"#), "pulse duration must be positive"),
+        (with(r#""duration": 1, "excitation": [{"half_sine": {"peak": 1, "duration": 0}}]"#), "pulse duration must be \
+            positive"),
         (with(r#""duration": 1, "excitation": [{"half_sine": {"peak": 1}}]"#), "missing field `duration`"),
         (with(r#""duration": 1, "engine": "exact", "tolerance": 1e-9"#), "runge_kutta and bristle"),
         (with(r#""duration": 1, "engine": "runge_kutta", "tolerance": 1"#), "between 1e-15 and 1e-2"),
         ("[]".to_owned(), "expected a scenario, which is an object"),
-        (with(r#""duration": 1, "engine": "bristle""#), "the engine bristle needs a law, and none was given; without one the engines are auto, exact"),
-        (with(r#""duration": 1, "excitation": [{"sampled_force": {"interval": 0.1, "values": []}}]"#), "a sampled force needs one value"),
+        (with(r#""duration": 1, "engine": "bristle""#), "the engine bristle needs a law, and none was given; without \
+                                                         one the engines are auto, exact"),
+        (with(r#""duration": 1, "excitation": [{"sampled_force": {"interval": 0.1, "values": []}}]"#), "a sampled \
+            force needs one value"),
         (r#"{"oscillator": {"mass": 1, "stiffness": 1, "damping": {"peak_velocity_line": {"intercept": 1, "slope": -1}}}, "duration": 1}"#.to_owned(), "slope of damping over peak velocity must be zero or positive and finite, but is -1"),
         (law(r#"{"dahl": {"mu": 1, "sigma": 1, "exponent": 0}}"#), "dahl: exponent must be greater than 0, but is 0"),
         (law("{}"), "an object with one key"),
@@ -149,8 +153,10 @@ fn wrong_values_are_answered_with_what_would_be_right() {
         (law(r#"{"smoothed": {"law": {"coulomb": {}}, "width": 1}}"#), "coulomb needs coefficient"),
         (law(r#"{"smoothed": {"law": 1, "width": 1}}"#), "must be a law"),
         (law(r#"{"smoothed": {"law": {"dahl": {"mu": 1, "sigma": 1}}, "width": 1}}"#), "cannot be smoothed"),
-        (law(r#"{"smoothed": {"law": {"dahl": {"mu": 1, "sigma": 1}}, "width": 1}}"#), "a law of the speed alone can, such as coulomb or stribeck"),
-        (law(r#"{"smoothed": {"law": {"acceleration_coulomb": {"mu1": 1, "mu2": 1}}, "width": 1}}"#), "depends on the acceleration"),
+        (law(r#"{"smoothed": {"law": {"dahl": {"mu": 1, "sigma": 1}}, "width": 1}}"#), "a law of the speed alone can, \
+            such as coulomb or stribeck"),
+        (law(r#"{"smoothed": {"law": {"acceleration_coulomb": {"mu1": 1, "mu2": 1}}, "width": 1}}"#), "depends on the \
+            acceleration"),
     ] {
         let message = refused(&scenario);
         assert!(message.contains(said), "{scenario} gave: {message}");

@@ -25,7 +25,7 @@ pub(crate) struct AveragedNoise {
     pub(crate) samples: usize,
 }
 
-/// Times that noise is put on the motion once more.
+/// Number of trials in which noise is added to the motion once more.
 const REPEATS: u64 = 10;
 
 impl Measured {

@@ -14,7 +14,7 @@ pub(crate) struct Smoothed {
     averaged: Option<Averaged>,
 }
 
-/// How a series was averaged.
+/// Averaging of a series.
 #[derive(Debug, Clone, PartialEq)]
 struct Averaged {
     /// Neighbours to either side.

@@ -219,7 +219,7 @@ enum Start<'a> {
     Records,
     /// The same of further fits.
     Further,
-    /// On the friction over the speed that they show, and where `others` have ended.
+    /// Starts on the friction over the speed that the records show, and where `others` have ended.
     Friction { shown: &'a ShownFriction, others: &'a [&'a Fitted] },
 }
 

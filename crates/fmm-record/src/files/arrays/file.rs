@@ -14,7 +14,7 @@ use crate::sampling::{Sampling, uniform_grid};
 #[derive(Debug, Clone)]
 pub(crate) struct ArrayFile {
     pub(crate) notation: Notation,
-    /// In the order of the file.
+    /// Arrays in the order of the file.
     pub(crate) arrays: Vec<Array>,
     /// Short texts beside the arrays, by their paths: attributes and variables that may be units.
     pub(crate) texts: Vec<(String, String)>,

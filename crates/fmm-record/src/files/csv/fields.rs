@@ -179,8 +179,8 @@ pub(super) const NO_ROWS: &str = "the file has a header but no rows of data belo
 /// A row with more or fewer fields than the first.
 pub(super) fn ragged(line: u64, expected: usize, found: usize, separator: Separator) -> RecordError {
     let remedy = if separator == Separator::Sign(b',') {
-        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines stand above \
-         the table, skip them"
+        "; if the numbers have decimal commas, save the file with semicolons or tabs between the columns; if lines \
+         stand above the table, skip them"
     } else {
         ""
     };

@@ -202,7 +202,7 @@ fn names_in(comments: &VecDeque<Vec<u8>>, columns: &[Kind], separator: Separator
     })
 }
 
-/// What loggers of Campbell write in place of the units of stamps and record numbers.
+/// Words of Campbell's loggers in place of the units of stamps and record numbers.
 const OF_LOGGER: [&str; 2] = ["TS", "RN"];
 
 /// True for fields that are units, or stand in the places of units.

@@ -128,7 +128,8 @@ impl Reader {
             None => {
                 rows.cut(0, bounds[1]);
                 rows.remarks.push(format!(
-                    "the file has {count} tables; the first was read, which has {} of {length} samples; `table` chooses another",
+                    "the file has {count} tables; the first was read, which has {} of {length} samples; `table` \
+                     chooses another",
                     bounds[1]
                 ));
             }
@@ -204,7 +205,7 @@ impl Reader {
     }
 }
 
-/// What is found in a text beside the numbers.
+/// Findings in a text beside the numbers.
 #[derive(Default)]
 struct Found {
     columns: Vec<String>,

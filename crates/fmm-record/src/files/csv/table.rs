@@ -193,8 +193,8 @@ impl<R: Read> Table<R> {
             if !self.line.is_ended && length >= ENOUGH && least.is_some_and(|least| are_fewer(digits, least)) {
                 let (line, text) = (self.line.number, self.shown(last));
                 let what = format!(
-                    "line {line} ends with \"{text}\" and without a line end, and all other numbers of its column have more \
-                     digits: the file is cut off; if it is not, end its last line"
+                    "line {line} ends with \"{text}\" and without a line end, and all other numbers of its column have \
+                     more digits: the file is cut off; if it is not, end its last line"
                 );
                 return Err(RecordError::on_line(line, what));
             }
@@ -268,8 +268,8 @@ impl<R: Read> Table<R> {
                 let [this, other] = if mark == ',' { ["comma", "point"] } else { ["point", "comma"] };
                 let (name, text) = (&self.header.names[column], self.shown(column));
                 let what = format!(
-                    "line {line}, column \"{name}\": \"{text}\" has a decimal {this}, but earlier numbers have a decimal \
-                     {other}; a file must keep to one of them"
+                    "line {line}, column \"{name}\": \"{text}\" has a decimal {this}, but earlier numbers have a \
+                     decimal {other}; a file must keep to one of them"
                 );
                 return Err(RecordError::on_line(line, what));
             }

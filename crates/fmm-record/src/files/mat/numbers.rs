@@ -40,7 +40,7 @@ pub(super) fn take_apart(
     } else {
         let part = parts.next().ok_or("it has no dimensions")?;
         if part.code != INT32 || part.data.len() < 8 || part.data.len() % 4 != 0 {
-            return Err("its dimensions are not what dimensions must be");
+            return Err("its dimensions are not two or more whole numbers of 32 bits");
         }
         part.data.as_chunks().0.iter().map(|bytes: &[u8; 4]| order.unsigned(bytes) as usize).collect()
     };

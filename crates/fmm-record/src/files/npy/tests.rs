@@ -68,8 +68,8 @@ fn files_of_numpy() {
         assert_eq!(file.array("counts").unwrap().values(), [-3.0, 200.0, 5.0]);
         assert_eq!(
             file.channel("note").unwrap_err().to_string(),
-            "the variable \"note\" is of type <U4 (read are integers of up to 64 bits, and real numbers of 32 or 64), not a real numeric array; \
-             the file has: t (100), v (100, 2), fs (), counts (3)"
+            "the variable \"note\" is of type <U4 (read are integers of up to 64 bits, and real numbers of 32 or 64), \
+             not a real numeric array; the file has: t (100), v (100, 2), fs (), counts (3)"
         );
     }
     // numpy.save of a matrix in Fortran order and of the other order of bytes.

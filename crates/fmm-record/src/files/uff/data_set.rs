@@ -1,4 +1,4 @@
-//! Data set 58: a function of an abscissa, and the record that it may be.
+//! Data set 58: a function of an abscissa, and its record if the abscissa is time.
 
 use crate::error::RecordError;
 use crate::files::reading::{Column, Reading, only, quoted};
@@ -23,7 +23,7 @@ pub struct DataSet {
 /// Abscissa of a function.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Abscissa {
-    /// At equal distances.
+    /// Abscissae at equal distances.
     Even {
         /// The first point.
         start: f64,

@@ -151,8 +151,8 @@ pub(super) fn binary(
         let plausible = |layout: &&Layout| layouts.len() == 1 || layout.increases(&block[..kept(layout)], order);
         let layout = layouts.iter().find(plausible).ok_or_else(|| {
             let what = format!(
-                "the binary data set at line {begin} ends neither as if its abscissae were single nor as if they were double \
-                 numbers, and they increase neither way"
+                "the binary data set at line {begin} ends neither as if its abscissae were single nor as if they were \
+                 double numbers, and they increase neither way"
             );
             RecordError::on_line(begin, what)
         })?;

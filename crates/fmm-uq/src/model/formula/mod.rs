@@ -38,7 +38,7 @@ use crate::model::formula::parser::Step;
 pub struct Formula {
     text: String,
     quantities: usize,
-    /// In the order of evaluation, operands before their operator.
+    /// Steps in the order of evaluation, operands before their operator.
     steps: Vec<Step>,
 }
 

@@ -149,7 +149,7 @@ pub(super) fn parse(text: &str) -> Result<Steps, UncertaintyError> {
     }
 }
 
-/// How many parentheses, powers and signs of a formula lie within each other, at most. A sum may be as long as it likes.
+/// Greatest number of parentheses, powers and signs of a formula that lie within each other. A sum may be as long as it likes.
 fn depth(text: &str) -> usize {
     // Powers and signs since the last weaker operator, for each parenthesis that is open.
     let (mut chains, mut depth, mut deepest) = (vec![0], 0, 0);

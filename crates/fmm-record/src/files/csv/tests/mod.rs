@@ -72,8 +72,8 @@ fn a_name_without_its_unit_is_enough_where_one_column_has_it() {
     assert_eq!(channel("velocity").unwrap().channel, "Velocity [m/s]", "the unit is that of the column");
     assert_eq!(
         channel("x").unwrap_err().to_string(),
-        "2 columns are called \"x\": \"x (left) [mm]\" at position 2, \"x (right) [mm]\" at position 3; choose one by its \
-         whole name or by its position, counted from 0"
+        "2 columns are called \"x\": \"x (left) [mm]\" at position 2, \"x (right) [mm]\" at position 3; choose one by \
+         its whole name or by its position, counted from 0"
     );
     assert!(says(&channel("vel"), "there is no column \"vel\""), "a part of a name is none");
     let timed = Reader::default().time("t").channel("v").read_from(text.as_bytes()).unwrap();

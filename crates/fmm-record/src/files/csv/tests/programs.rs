@@ -31,7 +31,8 @@ fn labview() {
 
 #[test]
 fn tektronix() {
-    let newer = "Model,DPO2024B\nFirmware Version,1.56\n\nWaveform Type,ANALOG\nHorizontal Units,s\nSample Interval,4e-06\n\
+    let newer = "Model,DPO2024B\nFirmware Version,1.56\n\nWaveform Type,ANALOG\nHorizontal Units,s\nSample \
+                 Interval,4e-06\n\
                  Record Length,4\nProbe Attenuation,1.0\nVertical Units,V\n,\n,\nLabel,\nTIME,CH1\n";
     let rows = "-8.0e-06,0.04\n-4.0e-06,0.02\n0.0e+00,0.01\n4.0e-06,0.00\n";
     let found = reading(&format!("{newer}{rows}"));
@@ -75,7 +76,8 @@ fn picoscope() {
 #[test]
 fn catman() {
     let found = reading(
-        "HBM_CATMANDATAFILE_40\t\nNo test\t\nT0 = 04.03.2021 10:11:12\t\nZeit  1 - Standardmessrate\tMX840_1 CH 1\tKraft\n\
+        "HBM_CATMANDATAFILE_40\t\nNo test\t\nT0 = 04.03.2021 10:11:12\t\nZeit  1 - Standardmessrate\tMX840_1 CH \
+         1\tKraft\n\
          s\tmm\tN\n0,0000\t1,50\t12,0\n0,0005\t1,25\t12,5\n0,0010\t0,75\t13,0\n",
     );
     assert_eq!((found.record.rate(), &found.channel[..]), (2000.0, "MX840_1 CH 1 [mm]"));
@@ -145,7 +147,8 @@ fn oscilloscopes_and_loggers() {
                    0.001000\t0.001000\ndata:\n1.5E-01\t1\n2.5E-01\t2\n-1E-1\t3\n";
     let express = Reader::default().channel("Dev1_ai1").read_from(express).unwrap();
     assert_eq!((express.record.values(), express.record.rate()), (&[1.0, 2.0, 3.0][..], 1000.0));
-    let one = "channel names: \nDev1_ai0\nstart times: \n3/4/2026 13:59:59.0\ndt: \n0.001000\ndata:\n1.5E-01\n2.5E-01\n-1E-1\n";
+    let one = "channel names: \nDev1_ai0\nstart times: \n3/4/2026 13:59:59.0\ndt: \
+               \n0.001000\ndata:\n1.5E-01\n2.5E-01\n-1E-1\n";
     let one = read_text(one).unwrap();
     assert_eq!(
         (one.record.values(), one.record.rate(), &one.channel[..]),

@@ -105,7 +105,8 @@ fn promises_that_are_not_kept() {
     let none = UffFile::parse(&ascii(FORM, "")).unwrap_err().to_string();
     assert_eq!(
         none,
-        "the file has no data set 58 with points, and no others; the data set at line 2 promises 6 points, but 0 are there"
+        "the file has no data set 58 with points, and no others; the data set at line 2 promises 6 points, but 0 are \
+         there"
     );
 
     let form = |count: &str| FORM.replace("         2         6", &format!("         4{count:>10}"));
