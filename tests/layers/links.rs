@@ -1,4 +1,4 @@
-//! Links of the pages: each leads to a file of the workspace, and to a heading that it has.
+//! Links and paths of the pages: each leads to a file of the workspace, and a link to a heading that it has.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -72,6 +72,30 @@ fn every_link_leads_somewhere() {
     }
     assert!(count > 100, "{count} links on {} pages", pages.len());
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// The paths of the workspace between backquotes on a page, without those that stand for several.
+fn named_paths(page: &str) -> impl Iterator<Item = &str> {
+    let places = ["crates/", "docs/", "tests/", "examples/", "benches/", "fuzz/", ".ci/", ".github/"];
+    let named = page.split("```").step_by(2).flat_map(|text| text.split('`').skip(1).step_by(2));
+    named.filter(move |text| places.iter().any(|place| text.starts_with(place)) && !text.contains(['*', ' ', '{', '[']))
+}
+
+#[test]
+fn every_path_that_a_page_names_is_there() {
+    let mut pages: Vec<PathBuf> = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"].map(PathBuf::from).into();
+    pages.extend(files("docs", &["md"]));
+    let mut missing = Vec::new();
+    for path in &pages {
+        let page = text(path);
+        let gone = named_paths(&page).filter(|named| !root().join(named.split([':', '#']).next().unwrap()).exists());
+        missing.extend(gone.map(|named| format!("{}: there is no {named}", path.display())));
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+    assert_eq!(
+        named_paths("`crates/a.rs`\n```\n`docs/b`\n```\n`tests/*.rs` `docs/c`").collect::<Vec<_>>(),
+        ["crates/a.rs", "docs/c"]
+    );
 }
 
 #[test]
