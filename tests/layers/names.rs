@@ -13,7 +13,6 @@ const UNUSED: &[&str] = &[
     "fmm_uq::Failure",
     "fmm_uq::FailureKind",
     "fmm_uq::Failures",
-    "fmm_uq::Histogram",
     "fmm_uq::Region",
     "fmm_uq::SecondOrder",
 ];

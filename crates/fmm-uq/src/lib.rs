@@ -79,7 +79,7 @@
 //! * `formula`: models as text, `Formula`.
 //! * `rayon`: blocks of trials on all threads of the current pool, with the same bits.
 //! * `schemars`: JSON schemas of budgets and statements.
-//! * `serde`: [`PartialRun`]s, failures, intervals, histograms, statements and budgets as text.
+//! * `serde`: [`PartialRun`]s, failures, intervals, statements and budgets as text.
 //!
 //! # Neighbours
 //!
@@ -116,7 +116,7 @@ pub use model::Formula;
 pub use model::{ModelOutput, Taylor};
 pub use moments::Moments;
 pub use monte_carlo::{
-    Adaptive, Histogram, IntervalKind, MonteCarlo, OutputSample, PartialRun, Progress, TrialStatement, VarianceShare,
+    Adaptive, IntervalKind, MonteCarlo, OutputSample, PartialRun, Progress, TrialStatement, VarianceShare,
 };
 pub use region::Region;
 pub use validation::{Validation, validate};

@@ -93,7 +93,7 @@ impl InputEntry {
             _ => return Err(format!("{name} has more than one of value and u, limits and observations").into()),
         }
         if self.distribution.is_some() && self.limits.is_none() {
-            return Err(format!("the distribution of {name} belongs to limits; value and u are normal").into());
+            return Err(format!("{name} has a distribution, which belongs to limits; give lower and upper, or leave it out: value and u are normal").into());
         }
         if self.degrees_of_freedom.is_some() && self.observations.is_some() {
             return Err(

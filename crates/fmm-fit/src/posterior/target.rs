@@ -184,7 +184,7 @@ impl<'a, P: Residuals + ?Sized> Target<'a, P> {
         }
     }
 
-    /// Q of the residuals last evaluated.
+    /// Sum of squares Q of the residuals that were evaluated last.
     fn square(&self, correlation: Option<Image>) -> f64 {
         match (correlation, &self.series) {
             (Some(rho), Some(series)) => square(&self.point.residuals, series, rho.value)[0],

@@ -171,7 +171,7 @@ impl Local<'_> {
             (Load::Other(load), Some(of_machine)) => load.value() / of_machine.value(),
             (Load::Other(_), None) => {
                 return Err(IdentifyError::missing(format!(
-                    "{} has a normal load, which is a multiple of that of the machine: give the machine one",
+                    "{} has a normal load, but that of the machine, of which it is a multiple, is not stated; give the machine its normal load",
                     test.name()
                 )));
             }

@@ -99,7 +99,7 @@ pub(super) fn beside_line(terms: &[&[Term]]) -> impl Iterator<Item = Trial> {
 /// Springs with a stop, a preload or a gap, tried if a smooth spring leaves correlated residuals.
 pub(super) const CORNERS: [&[Term]; 2] = [&[Term::Stop], &[Term::Gap]];
 
-/// A value that is held of `law`, or of all laws for `None`, is meant for the `candidate`.
+/// True if a value that is held of `law`, or of all laws if that is `None`, is meant for the `candidate`.
 fn is_meant(law: Option<&str>, candidate: &Candidate) -> bool {
     law.is_none_or(|law| candidate.law_name() == law)
 }

@@ -15,7 +15,7 @@ mod settling;
 mod statement;
 
 pub use adaptive::{Adaptive, IntervalKind};
-pub use output_sample::{Histogram, OutputSample};
+pub use output_sample::OutputSample;
 pub use partial_run::PartialRun;
 pub use sensitivity::VarianceShare;
 pub use statement::TrialStatement;

@@ -256,15 +256,3 @@ fn impossible_runs_are_refused() {
     assert!(run.run(|_| [1e300, 0.0]).is_ok());
     assert!(run.run(|x| x[0] * 1e200).is_err(), "squares overflow");
 }
-
-#[test]
-fn histograms_have_the_area_one() {
-    let sample = MonteCarlo::new(&inputs(), 10_000).unwrap().run(|x| x[2]).unwrap();
-    let histogram = sample.histogram(0, 20).unwrap();
-    assert_eq!(histogram.counts.iter().sum::<u64>(), 10_000);
-    let area: f64 = histogram.density().iter().map(|density| density * histogram.width).sum();
-    assert!((area - 1.0).abs() < 1e-12);
-    assert!((histogram.centres()[0] - histogram.start - 0.5 * histogram.width).abs() < 1e-15);
-    let constant = MonteCarlo::new(&inputs(), 10).unwrap().run(|_| 1.0).unwrap();
-    assert!(sample.histogram(0, 0).is_err() && constant.histogram(0, 5).is_err());
-}

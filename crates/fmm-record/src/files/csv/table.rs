@@ -160,7 +160,7 @@ impl<R: Read> Table<R> {
         Ok(rows)
     }
 
-    /// The chosen numbers of the current row; above it are rows, of which some are damaged.
+    /// The chosen numbers of the current row. Rows above it are known, and some of them may be damaged.
     fn row<const N: usize>(
         &mut self,
         chosen: [usize; N],

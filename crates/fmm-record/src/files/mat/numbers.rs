@@ -86,7 +86,8 @@ fn fields(
     if depth == DEEPEST {
         return Err("its structures are too deep");
     }
-    let length = parts.next().filter(|part| part.code == INT32).ok_or("its names have no length")?;
+    let length =
+        parts.next().filter(|part| part.code == INT32).ok_or("the length of the names of its fields is missing")?;
     let length = length.data.get(..4).map_or(0, |bytes| parts.order.unsigned(bytes) as usize);
     let names = parts.next().filter(|part| part.code == INT8).ok_or("its fields have no names")?;
     if length == 0 || names.data.len() % length != 0 {
