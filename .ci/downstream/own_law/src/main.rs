@@ -1,4 +1,4 @@
-//! What one file with a law gives: its motion, the derivatives of that, and its parameters back with their uncertainty.
+//! One law in one file: its motion, the derivatives of that, and its parameters back with their uncertainty.
 
 use std::error::Error;
 
