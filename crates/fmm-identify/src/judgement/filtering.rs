@@ -24,7 +24,7 @@ use crate::warning::Warning;
 /// the records do not determine the filter, the warning is about their beginning, which the filter leaves out.
 ///
 /// # Errors
-/// That of a fit behind a filter, if it cannot be made.
+/// The error of a fit behind a filter, if it cannot be made.
 pub(crate) fn filtering_sensor(
     decays: &[Experiment],
     identifications: &[Identification],
@@ -75,7 +75,7 @@ pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) 
 /// is no vibration.
 ///
 /// # Errors
-/// That of a record of which the filter leaves too little, or that of the fit.
+/// The error of a record of which the filter leaves too little, or that of the fit.
 pub(crate) fn behind_filter(
     decays: &[Experiment],
     identifications: &[Identification],
