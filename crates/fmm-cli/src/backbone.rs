@@ -176,7 +176,7 @@ pub(crate) struct Content<'a> {
     remarks: &'a [String],
     /// Unit of the record.
     unit: &'a str,
-    /// Begin of the part that was used (s).
+    /// Beginning of the part that was used (s).
     from: f64,
     /// End of the part that was used (s).
     to: f64,
@@ -195,7 +195,7 @@ pub(crate) struct Content<'a> {
 struct Mode {
     /// Frequency of the line (Hz).
     frequency: f64,
-    /// In the unit of the record.
+    /// Amplitude in the unit of the record.
     amplitude: f64,
     share_of_energy: f64,
     /// Peak over the noise beside it (1).
@@ -204,7 +204,7 @@ struct Mode {
     damping: Option<f64>,
     /// True for a mode that does not decay.
     steady: bool,
-    /// Of a stronger mode, if it is one.
+    /// Number of times the frequency of a stronger mode, if it is a multiple of one.
     multiple: Option<u32>,
 }
 
@@ -214,7 +214,7 @@ struct Mode {
 struct Point {
     /// Middle of the window (s).
     time: f64,
-    /// In `unit_of_amplitude`.
+    /// Amplitude and its standard uncertainty, in `unit_of_amplitude`.
     amplitude_u: [f64; 2],
     /// Frequency (Hz).
     frequency_u: [f64; 2],

@@ -99,7 +99,7 @@ impl FTest {
     /// assert!((p - 0.05).abs() < 1e-9);
     /// ```
     pub fn tail(f: f64, added: f64, freedom: f64) -> Option<f64> {
-        /// With more the variance below is as good as known.
+        /// Degrees of freedom from which on the variance below is as good as known.
         const MANY: f64 = 1e6;
         if f.is_nan() {
             return None;

@@ -15,7 +15,7 @@ pub(crate) struct SharedPart {
     pub(crate) input: Stated,
     /// Records that share it.
     pub(crate) records: usize,
-    /// In the unit of the quantity.
+    /// Standard uncertainty in the unit of the quantity.
     pub(crate) u: f64,
 }
 
@@ -24,7 +24,7 @@ type Parts = Vec<(usize, f64)>;
 
 /// Results of records in parts.
 pub(super) struct Parted {
-    /// With the uncertainties of what is the records' own.
+    /// Results of the records, with the uncertainties that are their own.
     results: Vec<Estimated>,
     /// Each input that two records or more share, with how many they are.
     inputs: Vec<(Stated, usize)>,

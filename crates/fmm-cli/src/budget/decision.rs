@@ -27,7 +27,7 @@ pub(super) struct Tolerance {
 /// Demand on a measured value that is accepted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Rule {
-    /// Within the tolerance.
+    /// Acceptance within the tolerance.
     Simple,
     /// Guard band of this many U within the tolerance.
     GuardBand(f64),

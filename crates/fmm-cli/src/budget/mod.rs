@@ -59,7 +59,7 @@ const DIGITS: u32 = 2;
 struct Stated {
     formula: String,
     budget: Budget,
-    /// None where u is zero or its degrees of freedom are not defined.
+    /// Expanded uncertainty; none if u is zero or its degrees of freedom are not defined.
     statement: Option<Statement>,
     /// Result of the trials, if it has a standard deviation.
     trials: Option<TrialStatement>,

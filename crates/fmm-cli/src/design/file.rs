@@ -16,7 +16,7 @@ use crate::scenario::{Entries, Field, given_twice, laws};
 pub(super) struct Wanted {
     pub(super) guess: Guess,
     pub(super) tests: Vec<PlannedTest>,
-    /// For each test the value of each number that the file varies, by name.
+    /// Values of the numbers that the file varies, by name, for each test.
     pub(super) settings: Vec<BTreeMap<&'static str, f64>>,
     pub(super) choose: Choose,
 }

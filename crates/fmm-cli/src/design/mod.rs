@@ -48,7 +48,7 @@ struct Row {
     name: String,
     settings: BTreeMap<&'static str, f64>,
     cost: f64,
-    /// By itself; none if it does not determine what is the aim.
+    /// Standard uncertainty of the aim by this test alone; none if it does not determine the aim.
     u: Option<f64>,
     told: String,
 }

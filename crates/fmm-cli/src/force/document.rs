@@ -113,7 +113,7 @@ struct OfFinding<'a> {
     no_interval: Option<&'static str>,
 }
 
-/// How a model predicts a record to which it was not fitted.
+/// Prediction by a model of a record to which it was not fitted.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Predicted {
@@ -130,7 +130,7 @@ struct Samples<'a> {
     time_s: &'a [f64],
     velocity: &'a [f64],
     measured: &'a [f64],
-    /// None where the model says nothing.
+    /// Fitted force of each sample; none where the model says nothing.
     fitted: Vec<Option<f64>>,
     /// Measured less fitted.
     residuals: Vec<Option<f64>>,

@@ -59,7 +59,7 @@ pub(crate) struct Analysis {
     pub(crate) impulses: Vec<f64>,
     pub(crate) h1: FrequencyResponse,
     pub(crate) h2: FrequencyResponse,
-    /// Of real and imaginary part of H1; none for a single trial.
+    /// Standard uncertainty of the real and of the imaginary part of H1; none for a single trial.
     pub(crate) uncertainty: Option<Vec<f64>>,
     pub(crate) coherence: Coherence,
     pub(crate) peaks: Vec<Peak>,

@@ -18,7 +18,7 @@ pub(crate) struct File {
     #[serde(default)]
     pub(crate) description: String,
     pub(crate) oscillator: Machine,
-    /// None for a machine without friction.
+    /// Law; none for a machine without friction.
     pub(crate) law: Option<Entries>,
     /// N; with 1 a coefficient is a force.
     #[serde(default = "one")]
@@ -241,7 +241,7 @@ pub(crate) struct Initial {
     pub(crate) velocity: f64,
 }
 
-/// When the motion is sampled.
+/// Times at which the motion is sampled.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub(crate) enum Output {

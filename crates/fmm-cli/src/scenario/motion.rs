@@ -64,7 +64,7 @@ pub(crate) struct Energy {
     pub(crate) kinetic: Vec<f64>,
     pub(crate) potential: Vec<f64>,
     pub(crate) total: Vec<f64>,
-    /// None for an engine that does not keep account of the work.
+    /// Work; none for an engine that does not keep account of it.
     #[serde(flatten)]
     pub(crate) work: Option<Account>,
 }

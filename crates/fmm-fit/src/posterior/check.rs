@@ -63,7 +63,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    /// By the covariance of `positions`, of `order` coordinates each.
+    /// Scales by the covariance of `positions`, of `order` coordinates each.
     pub(super) fn of(positions: &[f64], order: usize) -> Self {
         let count = (positions.len() / order) as f64;
         let mut mean = vec![0.0; order];

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::FitError;
 
-/// When a fit stops and how it begins. The defaults suit every problem that the crate is tested on.
+/// Conditions under which a fit stops, and its beginning. The defaults suit every problem that the crate is tested on.
 ///
 /// ```
 /// use std::time::Duration;
@@ -48,14 +48,14 @@ impl Default for Options {
 }
 
 impl Options {
-    /// At most this many trial steps, over all restarts (5000).
+    /// Greatest number of trial steps, over all restarts (5000).
     #[must_use]
     pub fn with_max_iterations(mut self, iterations: usize) -> Self {
         self.max_iterations = iterations;
         self
     }
 
-    /// At most about this many evaluations of the residuals, those for differences included (no limit). The limit
+    /// Greatest number of evaluations of the residuals, about, those for differences included (no limit). The limit
     /// is looked at between trial steps.
     #[must_use]
     pub fn with_max_evaluations(mut self, evaluations: usize) -> Self {
@@ -63,7 +63,7 @@ impl Options {
         self
     }
 
-    /// At most this long (no limit). The clock is looked at between trial steps.
+    /// Longest time of a fit (no limit). The clock is looked at between trial steps.
     #[must_use]
     pub fn with_time_limit(mut self, limit: Duration) -> Self {
         self.time_limit = Some(limit);
@@ -99,7 +99,7 @@ impl Options {
         self
     }
 
-    /// At most this many Gauss–Newton steps that sharpen the minimum once the search has ended (40). Without
+    /// Greatest number of Gauss–Newton steps that sharpen the minimum once the search has ended (40). Without
     /// them about half of the digits are right, as a sum of squares is flat near its minimum.
     #[must_use]
     pub fn with_polish_steps(mut self, steps: usize) -> Self {

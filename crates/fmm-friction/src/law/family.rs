@@ -14,7 +14,7 @@ pub trait FamilyVisitor {
     /// Result for a family.
     type Output;
 
-    /// For family `F`.
+    /// Result for family `F`.
     fn visit<F: LawFamily>(&mut self) -> Self::Output;
 }
 

@@ -40,12 +40,12 @@ pub trait LawVisitor<D: Scalar, L>: Sized {
     /// Result for a law.
     type Output;
 
-    /// For a law of the sliding speed.
+    /// Result for a law of the sliding speed.
     fn sliding(self) -> Self::Output
     where
         L: SlidingLaw<D>;
 
-    /// For a law of the sliding speed that is a level plus a slope; by default like any law of the speed.
+    /// Result for a law of the sliding speed that is a level plus a slope; by default like any law of the speed.
     fn piecewise_linear(self) -> Self::Output
     where
         L: PiecewiseLinearLaw<D> + SlidingLaw<D>,
@@ -53,7 +53,7 @@ pub trait LawVisitor<D: Scalar, L>: Sized {
         self.sliding()
     }
 
-    /// For a law with internal state.
+    /// Result for a law with internal state.
     fn bristle(self) -> Self::Output
     where
         L: BristleLaw<D>;

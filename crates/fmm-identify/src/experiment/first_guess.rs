@@ -36,7 +36,7 @@ pub(crate) struct Dissipation {
     pub(crate) friction: f64,
 }
 
-/// From this many turning points on their centre is known well enough to see the amplitudes fall.
+/// Number of turning points from which on their centre is known well enough to see the amplitudes fall.
 const ENOUGH_TURNS: usize = 4;
 /// Shifts of the centre by friction, as shares of the amplitude, to begin with where the amplitudes do not tell.
 const SHARES: [f64; 6] = [0.0, 0.03, 0.06, 0.12, 0.2, 0.3];

@@ -64,7 +64,7 @@ pub struct ImpactSummary {
     pub samples: usize,
     /// Sampling rate (Hz).
     pub rate: f64,
-    /// When the blow begins (s).
+    /// Time at which the blow begins (s).
     pub begin: f64,
     /// J, impulse (N s) by the trapezoid rule, further hits included; its uncertainty is that of what lies between the
     /// samples, of the noise in the pulse and of the offset. Of a half sine over n intervals the first is J 0.67/n², by
@@ -94,7 +94,7 @@ pub struct ImpactSummary {
     pub speed: f64,
     /// Samples of the velocity that were bridged, as isolated ones far off their neighbours.
     pub spikes: usize,
-    /// When motion is last seen above the noise (s); `None` if that is so near the end of the record that it may go on.
+    /// Time at which motion is last seen above the noise (s); `None` if that is so near the end of the record that it may go on.
     pub rest: Option<f64>,
 }
 

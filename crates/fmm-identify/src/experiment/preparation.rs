@@ -103,7 +103,7 @@ pub struct RecordSummary {
     pub gain_uncertainty: f64,
     /// Relative standard uncertainty of the sampling rate (1).
     pub clock_uncertainty: f64,
-    /// When the motion was released (s), if the record begins at rest or in a slow motion.
+    /// Time of the release (s), if the record begins at rest or in a slow motion.
     pub release: Option<f64>,
     /// Half swings that stand out of the noise, by their peaks; the first one may be where the record begins.
     pub half_swings: usize,
@@ -115,7 +115,7 @@ pub struct RecordSummary {
     pub noise: f64,
     /// Step of the converter, in the unit of the record, if the values lie on a lattice.
     pub resolution: Option<f64>,
-    /// When the values come to rest within their noise (s), without any law; `None` if the record ends before.
+    /// Time from which on the values rest within their noise (s), without any law; `None` if the record ends before.
     pub rest_from: Option<f64>,
     /// Isolated samples that were left out.
     pub spikes: usize,
@@ -128,7 +128,7 @@ pub struct RecordSummary {
     /// Steady lines in the record, such as hum of the mains, the largest first. They are still in the record that is
     /// fitted.
     pub hum: Vec<Hum>,
-    /// When the machine was released or pushed again (s). The record is used until shortly before the first of them.
+    /// Times at which the machine was released or pushed again (s). The record is used until shortly before the first of them.
     pub further_releases: Vec<f64>,
     /// Time at which something else than the machine itself took the motion, after which the record was not used unless
     /// it was asked for.

@@ -281,7 +281,7 @@ fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
     without(range.len(), shifted).into_iter().map(|part| part.start + range.start..part.end + range.start).collect()
 }
 
-/// When `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least
+/// Time at which `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least
 /// half a period of the motion; `None` if they do not.
 fn rest_from(examination: &Examination, resolution: f64, frequency: f64) -> Option<f64> {
     /// The range of a thousand normal values, in standard deviations, with some to spare.

@@ -90,11 +90,11 @@ mod serialised {
         /// Speeds of `levels` and of the band.
         speeds: &'a [f64],
         levels: Vec<FrictionLevel>,
-        /// In which the whole curve lies with 95 %.
+        /// Band in which the whole curve lies with 95 %.
         simultaneous_band_95: Option<Vec<(f64, f64)>>,
         /// Speed below which there is no sample.
         samples_down_to: f64,
-        /// What speaks against the curve.
+        /// Reasons to doubt the curve.
         limits: &'a [String],
     }
 

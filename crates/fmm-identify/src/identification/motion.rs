@@ -32,7 +32,7 @@ impl FittedMotion {
         decided.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     }
 
-    /// When the contact stops for good, on the time axis of the record (s); `None` if it does not before the end.
+    /// Time at which the contact stops for good, on the time axis of the record (s); `None` if it does not before the end.
     pub fn stop_time(&self) -> Option<f64> {
         self.stop_time
     }

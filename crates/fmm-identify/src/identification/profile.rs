@@ -23,8 +23,8 @@ pub struct Profile {
     curve: Vec<(f64, f64)>,
 }
 
-/// Of a half width of the interval, the share by which the profile differs from value ± k u where a quantity counts as
-/// bent (1).
+/// Difference of the profile from value ± k u, as a share of the half width of the interval, from which on a quantity
+/// counts as bent (1).
 const BENT: f64 = 0.1;
 /// Steps of a curve on either side of the estimate.
 const STEPS: usize = 8;

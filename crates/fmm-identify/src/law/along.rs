@@ -164,7 +164,7 @@ struct Segment {
     /// Velocity at the beginning, with what is spread.
     velocity: f64,
     acceleration: f64,
-    /// When it turns after the beginning (s), if it does.
+    /// Time from the beginning to its turn (s), if it turns.
     turn: Option<f64>,
 }
 

@@ -34,7 +34,7 @@ struct FindingDocument<'a> {
     interval_95: Option<(f64, f64)>,
     /// Why there is no interval.
     no_interval: Option<&'static str>,
-    /// Of u; none where they are infinite.
+    /// Degrees of freedom of u; none if they are infinite.
     degrees_of_freedom: Option<f64>,
     unit: &'a str,
     /// `fitted`, `derived`, `fixed`, `at_bound` or `undetermined`.
@@ -48,11 +48,11 @@ struct FindingDocument<'a> {
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct Part {
     source: String,
-    /// In the unit of the finding.
+    /// Contribution in the unit of the finding.
     u: f64,
     /// Share of the variance (1).
     share: f64,
-    /// None where they are infinite.
+    /// Degrees of freedom; none if they are infinite.
     degrees_of_freedom: Option<f64>,
 }
 
@@ -95,7 +95,7 @@ struct IdentificationDocument<'a> {
     law: &'a str,
     /// Findings by name.
     parameters: BTreeMap<&'a str, &'a Finding>,
-    /// In the unit of the record.
+    /// Root mean square of the residuals, in the unit of the record.
     rms_residual: f64,
     /// Number of directions of the parameters that the record determines.
     rank: usize,
@@ -107,7 +107,7 @@ struct IdentificationDocument<'a> {
     aicc: Option<f64>,
     /// End of the search for the least squares, in words.
     outcome: String,
-    /// Of the residuals, in samples.
+    /// Correlation time of the residuals, in samples.
     autocorrelation_time: f64,
     warnings: Vec<String>,
 }
@@ -133,7 +133,7 @@ impl<'a> IdentificationDocument<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct RecordDocument<'a> {
-    /// Begin of the part that was used.
+    /// Beginning of the part that was used.
     from_s: f64,
     /// End of the part that was used.
     to_s: f64,
@@ -268,7 +268,7 @@ impl<'a> BoundDocument<'a> {
     }
 }
 
-/// What the residuals say of a term that was not fitted.
+/// Statement of the residuals on a term that was not fitted.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct ScoreTestDocument {
@@ -303,15 +303,15 @@ struct ComparisonDocument<'a> {
     complete: bool,
     /// Terms that were not fitted, and what the residuals say of them.
     signs: &'a [ScoreTest],
-    /// Of the friction of the preferred law.
+    /// Change of the friction with time: the one that the residuals of the preferred law ask for, and its price.
     friction_change: Option<Unseen>,
     /// The same over the position.
     friction_over_position: Option<Unseen>,
-    /// Of a preferred law without damping.
+    /// The same of a viscous damping beside a preferred law without damping.
     unseen_damping: &'a Option<Unseen>,
-    /// Of a preferred law without friction.
+    /// Upper bound of the friction beside a preferred law without friction.
     friction_bound: Option<FrictionBound>,
-    /// Of each model against the best one.
+    /// Value p of each model against the best one.
     p: &'a [f64],
     /// Misfit with twice the rank of each model, by which laws are preferred.
     scores: &'a [f64],

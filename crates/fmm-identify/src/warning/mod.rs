@@ -109,7 +109,7 @@ pub enum Warning {
     },
     /// The baseline jumps.
     OffsetStep {
-        /// When (s).
+        /// Time (s).
         time: f64,
         /// Height of the step, in the unit of the record.
         height: f64,
@@ -132,7 +132,7 @@ pub enum Warning {
     },
     /// The machine was released or pushed again; only the part before that was used.
     FurtherRelease {
-        /// When (s).
+        /// Time (s).
         time: f64,
     },
     /// Another mode vibrates beside the one that is fitted.
@@ -173,7 +173,7 @@ pub enum Warning {
     NarrowStop {
         /// (|load| − static level)/static level at that turning point.
         margin: f64,
-        /// When (s).
+        /// Time (s).
         time: f64,
     },
     /// The records move a quantity far from what was known of it.
@@ -316,7 +316,7 @@ pub enum Warning {
     FurtherHit {
         /// Number of the trial, from 1.
         trial: usize,
-        /// When (s).
+        /// Time (s).
         time: f64,
         /// Height over that of the pulse (1).
         share: f64,

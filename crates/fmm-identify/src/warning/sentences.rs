@@ -20,8 +20,7 @@ fn limit_of_unit(unit: &str) -> &'static str {
 }
 
 impl Warning {
-    /// The sentences of warnings about friction that varies, and of those about disturbances and forces; nothing for
-    /// others.
+    /// The sentences of warnings about friction that varies, and of all below; nothing for others.
     pub(super) fn write_of_variation(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FrictionChanges { law } => write!(
@@ -40,7 +39,7 @@ impl Warning {
         }
     }
 
-    /// The sentences of these warnings and of those about forces along motions; nothing for others.
+    /// The sentences of warnings about disturbances, about the choice between laws and about forces; nothing for others.
     fn write_of_disturbances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FurtherRelease { time } => write!(
@@ -128,6 +127,14 @@ impl Warning {
                  sensor, or begin later"
             ),
             Self::NotSi { unit } => write!(f, "the record is in {unit}: {}", limit_of_unit(unit)),
+            _ => self.write_of_choice(f),
+        }
+    }
+
+    /// The sentences of warnings about the choice between laws, and of those about forces along motions; nothing for
+    /// others.
+    fn write_of_choice(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Self::DependsOnLaw { parameter, law, finding } => write!(
                 f,
                 "{parameter} depends on the law: {law}, which the record cannot exclude, gives {finding}; the standard \

@@ -65,7 +65,7 @@ const MOST_CANDIDATES: usize = 12;
 const LARGEST: f64 = 0.45;
 /// Smallest amplitude, in steps of the converter.
 const SMALLEST: f64 = 0.3;
-/// Of more samples than this neighbours are averaged to look for lines: 10 million would take half a minute.
+/// Number of samples above which neighbours are averaged to look for lines: 10 million would take half a minute.
 pub(crate) const MOST_SAMPLES: usize = 1 << 18;
 
 /// The lines of a record, the largest first.

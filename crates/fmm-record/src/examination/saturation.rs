@@ -61,8 +61,8 @@ pub(crate) fn limits(values: &[f64], noise: f64, step: f64) -> Option<Saturation
 /// Number of samples cut off at `level`, the largest or smallest value, where more than `visible` is lost.
 fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
     const SHORTEST: usize = 3;
-    /// Of the way to a distance d from the run, a straight flank makes half within d/2, a parabola that touches the
-    /// level a quarter.
+    /// Share of the way to a distance d from the run that lies within d/2, above which the flank is steep: a straight flank
+    /// makes half of it, a parabola that touches the level a quarter.
     const STEEP: f64 = 0.35;
     let rounding = 4.0 * f64::EPSILON * level.abs();
     let on_level = |value: &f64| (value - level).abs() <= rounding;

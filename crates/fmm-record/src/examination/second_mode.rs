@@ -237,7 +237,7 @@ impl Modulation {
 /// Heights of half cycles without a beat: a cubic for themselves, their logarithms or their inverses, whichever is
 /// nearest. Dry friction, viscous and quadratic damping make one of them a straight line.
 fn trend(heights: &[f64]) -> Option<Vec<f64>> {
-    /// From a height to its form, the slope there, and back from the form to a height.
+    /// Form of a height, its slope there, and the height of a form.
     type Form = (fn(f64) -> f64, fn(f64) -> f64, fn(f64) -> f64);
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
     let forms: [Form; 3] =

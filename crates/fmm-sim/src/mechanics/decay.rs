@@ -198,7 +198,7 @@ pub(crate) struct Ahead {
     pub(crate) most: [f64; 4],
 }
 
-/// From this ratio of σ to a on, the two exponentials of a motion without oscillation are far enough apart to be
+/// Ratio of σ to a from which on the two exponentials of a motion without oscillation are far enough apart to be
 /// written as a sum.
 const APART: f64 = 0.1;
 

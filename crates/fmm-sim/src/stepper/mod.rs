@@ -118,7 +118,7 @@ pub struct Stepper<L: FamilyMember> {
 #[derive(Debug, Clone)]
 enum Method<D> {
     ClosedForm(ClosedForm<D>),
-    /// With the memory of the last step.
+    /// Integration, with the memory of the last step.
     Integration(Box<Trajectory<D>>),
 }
 

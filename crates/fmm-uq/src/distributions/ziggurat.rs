@@ -198,7 +198,7 @@ impl Curve {
         x * self.density(x) + self.tail(x) / peak
     }
 
-    /// By how much the layers reach above the peak of the density, if the lowest ends at x; the number of layers that
+    /// Height by which the layers reach above the peak of the density, if the lowest ends at x; the number of layers that
     /// are too many, if there are.
     fn excess(&self, x: f64) -> f64 {
         let area = self.area(x);

@@ -34,7 +34,7 @@ struct Row<'a> {
     sensitivity: f64,
     sensitivity_unit: String,
     contribution: f64,
-    /// None for a correlated input, whose share may be negative.
+    /// Share of the variance (1); none for a correlated input, whose share may be negative.
     share: Option<f64>,
     share_with_correlations: f64,
 }

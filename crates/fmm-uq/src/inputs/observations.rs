@@ -30,7 +30,7 @@ pub struct Observations {
 }
 
 impl Observations {
-    /// At least two finite values.
+    /// Observations of at least two finite values.
     ///
     /// # Errors
     /// [`UncertaintyError::Invalid`] for fewer than two values, or if a value or the squares are not finite;

@@ -10,7 +10,7 @@ use crate::answer::Detail;
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Content<'a> {
-    /// Where the responses come from.
+    /// Files and estimator of the responses.
     origin: &'a str,
     /// Receptance, mobility or accelerance.
     form: String,
