@@ -1,7 +1,8 @@
 //! A friction law of one's own, written outside the crates: simulated, differentiated, fitted and compared.
 
 use fmm_friction::{
-    Affine, Berger, LawError, LawFamily, LawParameter, LawVisitor, PiecewiseLinearLaw, Role, SlidingLaw,
+    Affine, Berger, LawError, LawFamily, LawParameter, LawVisitor, OwnLaw, PiecewiseLinearLaw, Role, SlidingLaw,
+    SpeedFormula,
 };
 use fmm_identify::{Candidate, Experiment, IdentifyError, Machine, Preparation, compare, identify};
 use fmm_model::{Bounds, Oscillator, Parameter, Scalar};
@@ -130,4 +131,39 @@ fn is_identified_and_preferred_to_what_it_is_not() {
     let friction = comparison.preferred().finding("friction_per_mass").unwrap();
     let error = (friction.value() - 0.2) / friction.uncertainty().unwrap();
     assert!(error.abs() < 3.0, "F/m is {error} standard uncertainties off\n{comparison}");
+}
+
+/// Berger's law by plain numbers.
+#[derive(Debug)]
+struct Falling;
+
+impl SpeedFormula for Falling {
+    fn coefficients(&self, arguments: &[Vec<f64>]) -> Vec<f64> {
+        let [speed, floor, excess, decay] = arguments else { return Vec::new() };
+        let at = |point: usize| floor[point] + excess[point] * (-decay[point] * speed[point]).exp();
+        (0..speed.len()).map(at).collect()
+    }
+}
+
+/// A law that is known at run time only is fitted like its family, by differences in place of derivatives.
+#[test]
+fn a_law_of_run_time_is_fitted_like_its_family() {
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), Berger::new(0.2, 0.15, 10.0).unwrap(), 1.0);
+    let scenario = scenario.unwrap().starting_at(0.04, 0.0).unwrap();
+    let motion = RungeKutta::default().run(&scenario, &Sampling::uniform(2e-3, 1500).unwrap()).unwrap();
+    let values = motion.velocity().values().iter().zip(white(2e-4, 1, 1500)).map(|(v, noise)| v + noise).collect();
+    let record = Record::new(0.0, 2e-3, values, Quantity::Velocity, "m/s").unwrap();
+    let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
+    let law = OwnLaw::new("falling", Berger::PARAMETERS.to_vec(), Box::new(Falling)).unwrap();
+    let own = Candidate::own(Box::leak(Box::new(law)));
+    let machine = Machine::per_unit_mass();
+    let (own, family) = (compare(&machine, &decays, &[own]).unwrap(), identify::<Berger>(&machine, &decays).unwrap());
+    let own = own.preferred();
+    assert!((own.rms_residual() / family.rms_residual() - 1.0).abs() < 1e-9, "{own}\n{family}");
+    for name in ["friction_per_mass", "excess_friction_per_mass", "decay"] {
+        let [one, other] = [own, &family].map(|found| found.finding(name).unwrap());
+        let [one_u, other_u] = [one, other].map(|found| found.uncertainty().unwrap());
+        assert!((one.value() - other.value()).abs() < 1e-3 * other_u, "{one} beside {other}");
+        assert!((one_u / other_u - 1.0).abs() < 1e-3, "{one_u} beside {other_u}");
+    }
 }

@@ -9,6 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use fmm_friction::OwnLaw;
+use fmm_identify::{Candidate, IdentifyError};
 use fmm_record::{DataFile, Reader, RecordError};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::de::DeserializeOwned;
@@ -18,12 +20,14 @@ use crate::files::named;
 /// Sees how far a command is, from any thread, and may stop it.
 type Watcher<'a> = Box<dyn Fn(&str) -> ControlFlow<()> + Send + Sync + 'a>;
 
-/// Surroundings of a command: files that are not on the disk, and who sees how far it is. The default is a shell: files
-/// are those of the disk and standard input, and a line on standard error tells how far it is.
+/// Surroundings of a command: files that are not on the disk, laws that are not in the catalogue, and who sees how far it
+/// is. The default is a shell: files are those of the disk and standard input, and a line on standard error tells how far
+/// it is.
 #[derive(Default)]
 pub struct Host<'a> {
     /// Files by name before those of the disk; pipes and standard input join them when they are read.
     kept: Mutex<BTreeMap<PathBuf, Vec<u8>>>,
+    laws: Vec<&'static OwnLaw>,
     watcher: Option<Watcher<'a>>,
     is_stopped: AtomicBool,
 }
@@ -36,6 +40,13 @@ impl<'a> Host<'a> {
         self
     }
 
+    /// The same with a law of one's own, which options name like those of the catalogue, and before them.
+    #[must_use]
+    pub fn with_law(mut self, law: &'static OwnLaw) -> Self {
+        self.laws.push(law);
+        self
+    }
+
     /// The same with a watcher in place of the line on standard error: it is told each step in words, from any thread,
     /// and stops a search or a fit at its next step by `Break`.
     #[must_use]
@@ -45,6 +56,11 @@ impl<'a> Host<'a> {
 
     fn kept(&self) -> std::sync::MutexGuard<'_, BTreeMap<PathBuf, Vec<u8>>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The law with terms beside it that is called `name`.
+    pub(crate) fn candidate(&self, name: &str) -> Result<Candidate, IdentifyError> {
+        Candidate::named_among(name, &self.laws)
     }
 
     /// Bytes of a file; those of a pipe, or of standard input where the path is `-`, are read once and kept.

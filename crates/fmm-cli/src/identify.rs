@@ -242,7 +242,7 @@ impl Answer for Found {
 /// Finds the law that explains a record, or the parameters of those that are named; `command` is what was typed.
 pub(crate) fn identify(arguments: &Arguments, command: &str, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     let begun = Instant::now();
-    let mut found = found(arguments, &arguments.question.candidates()?, command, host)?;
+    let mut found = found(arguments, &arguments.question.candidates(host)?, command, host)?;
     let curve = || {
         if arguments.question.is_over(begun) {
             return Curve::Missing { missing: "the time limit is over".to_owned() };
@@ -258,7 +258,7 @@ pub(crate) fn identify(arguments: &Arguments, command: &str, host: &Host<'_>) ->
 
 /// Compares the laws that are named, or else viscous, dry and both.
 pub(crate) fn compare(arguments: &Arguments, command: &str, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
-    let found = found(arguments, &arguments.question.compared()?, command, host)?;
+    let found = found(arguments, &arguments.question.compared(host)?, command, host)?;
     with_posterior(found, arguments, host)
 }
 

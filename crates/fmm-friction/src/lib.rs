@@ -38,7 +38,8 @@
 //! [`PiecewiseLinearLaw`] marks the laws that move a linear machine in closed form. [`LawFamily`] names the parameters
 //! and builds a law at any number type, for fits, budgets and reports. [`MaxwellSlip`] and [`Gms`] are lists of
 //! elements; their families for a given number of elements are [`MaxwellSlipOf`] and [`GmsOf`]. A user's law that
-//! implements it is simulated and fitted like these. A family also states its kind: a [`LawVisitor`] has one method for
+//! implements it is simulated and fitted like these, as is, more slowly, an [`OwnLaw`] whose formula is known at run
+//! time only. A family also states its kind: a [`LawVisitor`] has one method for
 //! each kind of law, and [`catalogue()`] leads a [`FamilyVisitor`] through all families by name. A family states its
 //! [`SearchRole`] too: the stages at which a search for the law of a record tries it.
 //!
@@ -89,8 +90,8 @@ mod tests;
 pub use catalogue::{catalogue, family_named};
 pub use law::{
     Affine, BristleLaw, Element, Expansion, FamilyMember, FamilyVisitor, FeedForward, LawError, LawFamily, LawKind,
-    LawParameter, LawVisitor, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole, SearchStage,
-    SearchTrial, SlidingLaw, SpecialCase,
+    LawParameter, LawVisitor, OwnLaw, OwnMember, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole,
+    SearchStage, SearchTrial, SlidingLaw, SpecialCase, SpeedFormula,
 };
 pub use laws::{
     AccelerationCoulomb, Berger, BoucWen, BoucWenByLevel, Coulomb, CoulombStatic, CoulombViscous, Dahl,

@@ -1,6 +1,8 @@
 //! Law with its terms, chosen by name at run time.
 
-use fmm_friction::{Coulomb, CoulombViscous, FamilyVisitor, LawFamily, SpecialCase, Viscous, catalogue, family_named};
+use fmm_friction::{
+    Coulomb, CoulombViscous, FamilyVisitor, LawFamily, OwnLaw, SpecialCase, Viscous, catalogue, family_named,
+};
 
 use crate::error::IdentifyError;
 use crate::law::Law;
@@ -29,6 +31,11 @@ impl Candidate {
     /// The candidate of family `F`, which may be a law of one's own.
     pub const fn of<F: LawFamily>() -> Self {
         Self { law: Law::of::<F>(), terms: Terms::NONE }
+    }
+
+    /// The candidate of a law that is known at run time only. Its simulations take longer than those of a family.
+    pub fn own(law: &'static OwnLaw) -> Self {
+        Self { law: Law::own(law), terms: Terms::NONE }
     }
 
     /// The same law with `terms` beside it.
@@ -88,10 +95,22 @@ impl Candidate {
     /// # Errors
     /// [`IdentifyError::UnknownName`], with the names there are.
     pub fn named(name: &str) -> Result<Self, IdentifyError> {
+        Self::named_among(name, &[])
+    }
+
+    /// Like [`named`](Self::named), among the `own` laws before those of the catalogue.
+    ///
+    /// # Errors
+    /// [`IdentifyError::UnknownName`], with the names there are.
+    pub fn named_among(name: &str, own: &[&'static OwnLaw]) -> Result<Self, IdentifyError> {
         let mut parts = name.split('+').map(str::trim);
         let law = parts.next().unwrap_or_default();
-        let known = || Self::catalogue().iter().map(|candidate| candidate.law.name).collect::<Vec<_>>().join(", ");
-        let found = family_named(law, &mut Candidates);
+        let known = || {
+            let own = own.iter().map(|law| law.name());
+            own.chain(Self::catalogue().iter().map(|candidate| candidate.law.name)).collect::<Vec<_>>().join(", ")
+        };
+        let own_law = own.iter().find(|own| own.name() == law);
+        let found = own_law.map(|law| Self::own(law)).or_else(|| family_named(law, &mut Candidates));
         let found = found.ok_or_else(|| IdentifyError::UnknownName {
             what: format!(
                 "there is no law called {law:?}{}; the laws are: {}",

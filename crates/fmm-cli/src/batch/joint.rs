@@ -55,7 +55,7 @@ impl Together {
         let loads_differ = factors.iter().any(|factor| *factor != 1.0);
         // A record alone does not tell whose the linear damping is. Of the law, it would grow with the load.
         let fitted = if loads_differ && law == super::LAW { OF_MACHINE } else { law };
-        let candidate = question.candidate(fitted)?;
+        let candidate = question.candidate(fitted, host)?;
         let comparison = question.answer(&experiments, &[candidate], show)?;
         let found = comparison.preferred();
         Ok(Self {

@@ -208,7 +208,7 @@ pub(crate) fn quantities<'a>(rows: &[&'a Row]) -> Vec<(&'a str, &'a str)> {
 /// Identifies one record.
 fn found(record: &RecordOptions, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
     let (input, decay) = record.prepared(host)?;
-    let candidates = record.question.candidates()?;
+    let candidates = record.question.candidates(host)?;
     let comparison =
         record.question.answer(std::slice::from_ref(&decay), &candidates, |_, _| ControlFlow::Continue(()))?;
     let preferred = comparison.preferred();

@@ -107,7 +107,7 @@ pub(crate) fn force(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box
     let (fitted, others) = (read(&arguments.files)?, read(&arguments.validate)?);
     let records = |read: &[Read]| read.iter().map(|read| read.record.clone()).collect::<Vec<_>>();
     let (records, records_of_others) = (records(&fitted), records(&others));
-    let described = described(arguments, &records)?;
+    let described = described(arguments, &records, host)?;
     let compared = compared(arguments, &records, &records_of_others, &described, host)?;
     let of_columns = fitted.iter().chain(&others).flat_map(|read| read.columns.remarks.iter().map(named(&read.file)));
     let driven = others.iter().filter_map(|read| {
@@ -179,7 +179,11 @@ impl Answer for Found {
 }
 
 /// The models that the arguments describe.
-fn described(arguments: &Arguments, records: &[ForceRecord]) -> Result<Vec<Candidate>, Box<dyn Error>> {
+fn described(
+    arguments: &Arguments,
+    records: &[ForceRecord],
+    host: &Host<'_>,
+) -> Result<Vec<Candidate>, Box<dyn Error>> {
     let mut models: Vec<&str> = arguments.model.iter().map(String::as_str).collect();
     if models.is_empty() {
         models.extend(models_for(records));
@@ -191,7 +195,7 @@ fn described(arguments: &Arguments, records: &[ForceRecord]) -> Result<Vec<Candi
     }
     let mut described = Vec::with_capacity(models.len());
     for name in &models {
-        let mut model = Candidate::named(name)?;
+        let mut model = host.candidate(name)?;
         let is_meant = |held: &&Held| held.law.as_ref().is_none_or(|law| law_of(name) == *law);
         for held in arguments.hold.iter().filter(is_meant) {
             model = model.holding(&held.name, held.value)?;

@@ -11,6 +11,8 @@ use fmm_identify::{Candidate, Comparison, Experiment, Inquiry, Known, Machine, P
 use fmm_model::Restoring;
 use fmm_record::{Quantity, Record};
 
+use crate::host::Host;
+
 /// The machine, the laws and the sensor.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Question {
@@ -145,14 +147,14 @@ impl Question {
         Ok(machine)
     }
 
-    /// The laws that are named.
-    pub(crate) fn candidates(&self) -> Result<Vec<Candidate>, Box<dyn Error>> {
+    /// The laws that are named, those of the host among them.
+    pub(crate) fn candidates(&self, host: &Host<'_>) -> Result<Vec<Candidate>, Box<dyn Error>> {
         let mut candidates = Vec::new();
         for law in &self.law {
             if law == "all" {
                 candidates.extend(Candidate::standard());
             } else {
-                candidates.push(Candidate::named(law)?);
+                candidates.push(host.candidate(law)?);
             }
         }
         for Held { law, name, value } in self.held()? {
@@ -171,7 +173,7 @@ impl Question {
     }
 
     /// The same where laws are compared and not searched: viscous, dry and both unless others are named.
-    pub(crate) fn compared(&self) -> Result<Vec<Candidate>, Box<dyn Error>> {
+    pub(crate) fn compared(&self, host: &Host<'_>) -> Result<Vec<Candidate>, Box<dyn Error>> {
         if let Some(seconds) = self.time_limit {
             return Err(format!(
                 "--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison \
@@ -180,9 +182,9 @@ impl Question {
             .into());
         }
         if self.law.is_empty() {
-            return Self { law: vec!["all".to_owned()], ..self.clone() }.candidates();
+            return Self { law: vec!["all".to_owned()], ..self.clone() }.candidates(host);
         }
-        self.candidates()
+        self.candidates(host)
     }
 
     /// True if the time limit of a search that has `begun` then is over.
@@ -203,12 +205,12 @@ impl Question {
     }
 
     /// The one of the laws that are named, or that a search knows, which is called so.
-    pub(crate) fn candidate(&self, law: &str) -> Result<Candidate, Box<dyn Error>> {
-        if let Some(candidate) = self.candidates()?.into_iter().find(|candidate| candidate.name() == law) {
+    pub(crate) fn candidate(&self, law: &str, host: &Host<'_>) -> Result<Candidate, Box<dyn Error>> {
+        if let Some(candidate) = self.candidates(host)?.into_iter().find(|candidate| candidate.name() == law) {
             return Ok(candidate);
         }
         let named = Self { law: vec![law.replace(" of any sign", " + any sign")], ..self.clone() };
-        named.candidates()?.pop().ok_or_else(|| format!("there is no law called {law}").into())
+        named.candidates(host)?.pop().ok_or_else(|| format!("there is no law called {law}").into())
     }
 
     /// Inputs of the machine that are declared, by their names, with value and standard uncertainty in their units.

@@ -6,6 +6,7 @@ pub(crate) mod family;
 mod feed_forward;
 pub(crate) mod functions;
 mod kind;
+mod own;
 pub(crate) mod parameter;
 mod search;
 
@@ -17,6 +18,7 @@ pub use expansion::Expansion;
 pub use family::{FamilyMember, FamilyVisitor, LawFamily, Reparametrisation, SpecialCase};
 pub use feed_forward::FeedForward;
 pub use kind::{LawKind, LawVisitor};
+pub use own::{OwnLaw, OwnMember, SpeedFormula};
 pub use parameter::{LawParameter, Role};
 pub use search::{SearchRole, SearchStage, SearchTrial};
 

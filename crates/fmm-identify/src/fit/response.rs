@@ -180,7 +180,7 @@ impl<'a> Response<'a> {
             locations: &self.locations,
         };
         let mut friction = Vec::with_capacity(self.friction.len());
-        (law.along)(&law.values(&of_law[layout.law - layout.oscillator..]), alignment, &mut friction)?;
+        law.members.along(&law.values(&of_law[layout.law - layout.oscillator..]), alignment, &mut friction)?;
         let terms = &layout.terms;
         let beside = |term: Term| terms.place(term).map_or(0.0, |place| of_law[place]);
         let [linear, quadratic, cubic, power, exponent] =

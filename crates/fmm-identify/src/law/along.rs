@@ -45,10 +45,6 @@ pub(crate) struct SampleLocation {
     pub(crate) slides: bool,
 }
 
-/// Friction coefficient (1) at the sample of each location; of a law of the speed that leaps at rest none, 0, where the
-/// contact may not slide.
-pub(crate) type Along<D> = fn(&[D], Alignment<'_, D>, &mut Vec<D>) -> Result<(), EvaluationError>;
-
 /// Friction of family `F` by these `values`.
 pub(crate) fn along<F: LawFamily, D: Scalar>(
     values: &[D],
@@ -199,6 +195,30 @@ impl Segment {
     }
 }
 
+/// Friction of a `law` of the sliding speed.
+pub(crate) fn along_sliding<D: Scalar>(
+    law: &dyn SlidingLaw<D>,
+    alignment: Alignment<'_, D>,
+    friction: &mut Vec<D>,
+) -> Result<(), EvaluationError> {
+    friction.clear();
+    let leaps = law.coefficient(D::from(0.0)).value() > 0.0;
+    for (row, location) in (alignment.first..).zip(alignment.locations) {
+        if leaps && !location.slides {
+            friction.push(D::from(0.0));
+            continue;
+        }
+        let elapsed = alignment.elapsed(row, *location);
+        let velocity = alignment.between(&alignment.motion.velocities, *location, elapsed);
+        let acceleration = alignment.between(&alignment.motion.accelerations, *location, elapsed);
+        let losing = velocity.value() * acceleration.value() < 0.0;
+        let speed = velocity.abs();
+        let size = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
+        friction.push(if velocity.value() < 0.0 { -size } else { size });
+    }
+    Ok(())
+}
+
 struct Following<'a, 'g, D, L> {
     law: &'a L,
     alignment: Alignment<'g, D>,
@@ -213,21 +233,7 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
         L: SlidingLaw<D>,
     {
         let Self { law, alignment, friction } = self;
-        let leaps = law.coefficient(D::from(0.0)).value() > 0.0;
-        for (row, location) in (alignment.first..).zip(alignment.locations) {
-            if leaps && !location.slides {
-                friction.push(D::from(0.0));
-                continue;
-            }
-            let elapsed = alignment.elapsed(row, *location);
-            let velocity = alignment.between(&alignment.motion.velocities, *location, elapsed);
-            let acceleration = alignment.between(&alignment.motion.accelerations, *location, elapsed);
-            let losing = velocity.value() * acceleration.value() < 0.0;
-            let speed = velocity.abs();
-            let size = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
-            friction.push(if velocity.value() < 0.0 { -size } else { size });
-        }
-        Ok(())
+        along_sliding(law, alignment, friction)
     }
 
     fn bristle(self) -> Self::Output

@@ -3,15 +3,18 @@
 
 pub(crate) mod along;
 pub(crate) mod dimension;
+pub(crate) mod member;
 pub(crate) mod naming;
 
-use fmm_fit::EvaluationError;
-use fmm_friction::{FamilyVisitor, LawFamily, LawKind, LawParameter, Reparametrisation, Role, SlidingLaw, SpecialCase};
-use fmm_model::{Dual, Oscillator, Scalar};
-use fmm_sim::{Engine, Excitation, Sampling, Scenario, Thesis, Trajectory, simulate_into};
+use std::marker::PhantomData;
 
-use along::{Along, along};
+use fmm_fit::EvaluationError;
+use fmm_friction::{LawFamily, LawKind, LawParameter, OwnLaw, Role, SlidingLaw, SpecialCase};
+use fmm_model::{Oscillator, Scalar};
+use fmm_sim::{Engine, Excitation, Sampling, Scenario, Thesis, Trajectory};
+
 use dimension::is_coefficient;
+use member::{Members, Of};
 
 /// Directions of derivative that one simulation carries; a law with more parameters takes several.
 pub(crate) const DIRECTIONS: usize = 6;
@@ -37,9 +40,9 @@ pub(crate) struct Motion<D> {
 }
 
 impl<D: Scalar> Motion<D> {
-    /// The scenario of it by family `F`.
-    fn scenario<F: LawFamily>(&self) -> Result<Scenario<D, F::At<D>>, EvaluationError> {
-        let scenario = Scenario::new(self.oscillator, F::at(&self.law)?, self.normal_load)?;
+    /// The scenario of it by a `law` of its values.
+    fn scenario<L>(&self, law: L) -> Result<Scenario<D, L>, EvaluationError> {
+        let scenario = Scenario::new(self.oscillator, law, self.normal_load)?;
         let scenario = match &self.change {
             Some((interval, factors)) => {
                 let loads: Vec<D> = factors.iter().map(|factor| self.normal_load * *factor).collect();
@@ -57,15 +60,6 @@ impl<D: Scalar> Motion<D> {
             None => scenario,
         })
     }
-
-    /// Simulates it by family `F`.
-    pub(crate) fn simulate<F: LawFamily>(
-        &self,
-        sampling: &Sampling,
-        trajectory: &mut Trajectory<D>,
-    ) -> Result<(), EvaluationError> {
-        Ok(simulate_into::<F, _>(&self.scenario::<F>()?, sampling, self.tolerance, trajectory)?)
-    }
 }
 
 impl Motion<f64> {
@@ -78,47 +72,23 @@ impl Motion<f64> {
     where
         F::At<f64>: SlidingLaw<f64>,
     {
-        Ok(Thesis::A3.run_into(&self.scenario::<F>()?, sampling, trajectory)?)
+        Ok(Thesis::A3.run_into(&self.scenario(F::at(&self.law)?)?, sampling, trajectory)?)
     }
 }
 
-/// Friction coefficient (1) of steady sliding by family `F` of these `values` at a speed (m/s) that grows or, if it is
-/// `losing`, falls.
-fn steady<F: LawFamily>(values: &[f64], speed: f64, losing: bool) -> Option<f64> {
-    F::steady_coefficient(&F::at::<f64>(values).ok()?, speed, losing)
-}
-
 /// The simulation of a motion by one family.
-pub(crate) type Simulate<D> = fn(&Motion<D>, &Sampling, &mut Trajectory<D>) -> Result<(), EvaluationError>;
+pub(crate) type Simulate<'a, D> =
+    &'a (dyn Fn(&Motion<D>, &Sampling, &mut Trajectory<D>) -> Result<(), EvaluationError> + Sync);
 
-/// Name, parameters and simulations of a law family.
+/// Name, parameters and simulations of a law family, or of a law that is known at run time only.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Law {
     pub(crate) name: &'static str,
     pub(crate) parameters: &'static [LawParameter],
     pub(crate) special_cases: &'static [SpecialCase],
-    pub(crate) plain: Simulate<f64>,
-    pub(crate) few: Simulate<Dual<FEW>>,
-    pub(crate) with_derivatives: Simulate<Dual<DIRECTIONS>>,
-    pub(crate) along: Along<f64>,
-    pub(crate) along_with_derivatives: Along<Dual<DIRECTIONS>>,
-    /// The same laws by parameters that a fit finds in fewer steps.
-    pub(crate) recast: fn() -> Option<Reparametrisation<Self>>,
-    kind: fn() -> LawKind,
+    pub(crate) members: &'static dyn Members,
     /// True if static levels of their own are fitted.
     fits_breakaway: bool,
-    steady: fn(&[f64], f64, bool) -> Option<f64>,
-}
-
-/// Makes values of families.
-struct Laws;
-
-impl FamilyVisitor for Laws {
-    type Output = Law;
-
-    fn visit<F: LawFamily>(&mut self) -> Law {
-        Law::of::<F>()
-    }
 }
 
 impl Law {
@@ -128,32 +98,30 @@ impl Law {
             name: F::NAME,
             parameters: F::PARAMETERS,
             special_cases: F::SPECIAL_CASES,
-            plain: Motion::simulate::<F>,
-            few: Motion::simulate::<F>,
-            with_derivatives: Motion::simulate::<F>,
-            along: along::<F, f64>,
-            along_with_derivatives: along::<F, Dual<DIRECTIONS>>,
-            recast: || F::reparametrisation(&mut Laws),
-            kind: F::kind,
+            members: &Of::<F>(PhantomData),
             fits_breakaway: false,
-            steady: steady::<F>,
         }
+    }
+
+    /// A law that is known at run time only.
+    pub(crate) fn own(law: &'static OwnLaw) -> Self {
+        Self { name: law.name(), parameters: law.parameters(), special_cases: &[], members: law, fits_breakaway: false }
     }
 
     /// Friction of steady sliding by the law of these [`fitted`](Self::fitted) values, in their unit of force, at a
     /// `speed` that grows or, if it is `losing`, falls; `None` if the family does not say.
     pub(crate) fn steady(&self, fitted: &[f64], speed: f64, losing: bool) -> Option<f64> {
-        (self.steady)(&self.values(fitted), speed, losing)
+        self.members.steady(&self.values(fitted), speed, losing)
     }
 
     /// True if it is one of the sliding speed, without internal state.
     pub(crate) fn is_of_speed(&self) -> bool {
-        matches!((self.kind)(), LawKind::Sliding | LawKind::PiecewiseLinear)
+        matches!(self.members.kind(), LawKind::Sliding | LawKind::PiecewiseLinear)
     }
 
     /// True if its motion has a closed form from event to event.
     pub(crate) fn is_piecewise_linear(&self) -> bool {
-        (self.kind)() == LawKind::PiecewiseLinear
+        self.members.kind() == LawKind::PiecewiseLinear
     }
 
     /// The same law with its static level fitted, as what it lies above the sliding level by.

@@ -268,7 +268,7 @@ impl<'p> ForceProblem<'p> {
         locations(&self.records()[record].motion, self.forces.samples[record].clone(), delay, &mut buffers.locations);
         let deflection = Self::value(p, self.deflection(record));
         let alignment = self.alignment(record, delay, deflection, &buffers.locations);
-        (self.law().along)(&self.law().values(&p[..self.forces.first_shape]), alignment, &mut buffers.plain)
+        self.law().members.along(&self.law().values(&p[..self.forces.first_shape]), alignment, &mut buffers.plain)
     }
 
     /// Derivatives of friction in up to [`DIRECTIONS`] of the parameters of law, delay and deflection.
@@ -284,7 +284,7 @@ impl<'p> ForceProblem<'p> {
         let delay = self.forces.delay.map_or(Dual::from(0.0), seeded);
         let deflection = self.deflection(record).map_or(Dual::from(0.0), seeded);
         let alignment = self.alignment(record, delay, deflection, &buffers.locations);
-        (self.law().along_with_derivatives)(&self.law().values(&fitted), alignment, &mut buffers.seeded)
+        self.law().members.along_with_derivatives(&self.law().values(&fitted), alignment, &mut buffers.seeded)
     }
 
     /// Fills the residuals, and the derivatives of each record by its rows of the table.

@@ -50,7 +50,7 @@ pub struct Problem<'a> {
     /// Relative tolerance (1) of simulations that integrate, if not the engine's own.
     tolerance: Option<f64>,
     /// Simulation without derivatives in place of that of the law.
-    euler: Option<Simulate<f64>>,
+    euler: Option<fn(&Motion<f64>, &Sampling, &mut Trajectory) -> Result<(), EvaluationError>>,
     /// Values with which a fit begins, where they are declared.
     declared: Vec<f64>,
     /// Forces along motions in place of the experiments.
@@ -191,9 +191,14 @@ impl<'a> Problem<'a> {
         Ok(Motion { tolerance: self.tolerance, ..motion })
     }
 
-    /// The simulation without derivatives.
-    fn plain(&self) -> Simulate<f64> {
-        self.euler.unwrap_or(self.law().plain)
+    /// Simulates a motion by the law, without derivatives.
+    fn plain(
+        &self,
+        motion: &Motion<f64>,
+        sampling: &Sampling,
+        trajectory: &mut Trajectory,
+    ) -> Result<(), EvaluationError> {
+        self.law().members.plain(motion, sampling, trajectory)
     }
 
     /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the
@@ -201,7 +206,7 @@ impl<'a> Problem<'a> {
     /// samples.
     fn simulate<D: Scalar>(
         &self,
-        simulate: Simulate<D>,
+        simulate: Simulate<'_, D>,
         record: usize,
         p: &[f64],
         directions: &[usize],
@@ -247,7 +252,7 @@ impl<'a> Problem<'a> {
         sampling: &Sampling,
         trajectory: &mut Trajectory,
     ) -> Result<(), EvaluationError> {
-        (self.law().plain)(&self.motion(0, p, &[])?, sampling, trajectory)
+        self.plain(&self.motion(0, p, &[])?, sampling, trajectory)
     }
 
     /// Velocities of `record` by these values.
@@ -259,7 +264,7 @@ impl<'a> Problem<'a> {
     ) -> Result<Vec<f64>, EvaluationError> {
         let mut trajectory = Trajectory::new();
         let sampling = sampling.clone().keeping(Channels::Velocity);
-        (self.law().plain)(&self.motion(record, p, &[])?, &sampling, &mut trajectory)?;
+        self.plain(&self.motion(record, p, &[])?, &sampling, &mut trajectory)?;
         Ok(trajectory.velocity().values().to_vec())
     }
 
@@ -267,7 +272,7 @@ impl<'a> Problem<'a> {
     pub(crate) fn events(&self, record: usize, p: &[f64]) -> Result<Trajectory, EvaluationError> {
         let mut trajectory = Trajectory::new();
         let ends = Sampling::uniform(self.experiments[record].record().duration(), 2)?.keeping(Channels::Position);
-        (self.law().plain)(&self.motion(record, p, &[])?, &ends, &mut trajectory)?;
+        self.plain(&self.motion(record, p, &[])?, &ends, &mut trajectory)?;
         Ok(trajectory)
     }
 
@@ -277,7 +282,8 @@ impl<'a> Problem<'a> {
         let offset = self.offset(record, p);
         let mut model = vec![0.0; count];
         let all = 0..count;
-        self.simulate(self.law().plain, record, p, &[], std::slice::from_ref(&all), |_, samples, inside, seen| {
+        let plain: Simulate<'_, f64> = &|motion, sampling, trajectory| self.plain(motion, sampling, trajectory);
+        self.simulate(plain, record, p, &[], std::slice::from_ref(&all), |_, samples, inside, seen| {
             for (out, value) in model[samples].iter_mut().zip(&seen.values()[inside]) {
                 *out = value + offset;
             }

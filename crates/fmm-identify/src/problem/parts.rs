@@ -123,13 +123,13 @@ impl Problem<'_> {
     /// The same problem by parameters that a fit finds in fewer steps; `None` for a law without such parameters, and
     /// where one that only this problem has is held.
     pub(crate) fn recast(&self) -> Option<Problem<'_>> {
-        let recast = Candidate { law: (self.law().recast)()?.family, ..self.candidate() };
+        let recast = Candidate { law: self.law().members.recast()?.family, ..self.candidate() };
         Problem::of(&recast, self.machine, self.records()).ok()
     }
 
     /// The values of this problem where those of the [recast](Self::recast) one have been `found`.
     pub(crate) fn of_recast(&self, found: &[f64]) -> Option<Vec<f64>> {
-        let Reparametrisation { family, values } = (self.law().recast)()?;
+        let Reparametrisation { family, values } = self.law().members.recast()?;
         let (before, rest) = found.split_at(self.table.law);
         let (of_law, own) = rest.split_at(family.fitted().count());
         Some([before, &values(of_law).ok()?, own].concat())

@@ -131,15 +131,20 @@ impl Problem<'_> {
 
     /// Fills one part with what each used sample shows.
     fn fill_samples(&self, p: &[f64], part: Part<'_>) -> Result<(), EvaluationError> {
+        let members = self.law().members;
         match part.directions.len() {
-            0..=FEW => self.fill_by(self.law().few, p, part),
-            _ => self.fill_by(self.law().with_derivatives, p, part),
+            0..=FEW => self.fill_by::<FEW>(&|motion, sampling, out| members.few(motion, sampling, out), p, part),
+            _ => {
+                let simulate: Simulate<'_, _> =
+                    &|motion, sampling, out| members.with_derivatives(motion, sampling, out);
+                self.fill_by::<DIRECTIONS>(simulate, p, part)
+            }
         }
     }
 
     fn fill_by<const N: usize>(
         &self,
-        simulate: Simulate<Dual<N>>,
+        simulate: Simulate<'_, Dual<N>>,
         p: &[f64],
         part: Part<'_>,
     ) -> Result<(), EvaluationError> {
@@ -201,7 +206,11 @@ impl Problem<'_> {
         let experiment = &self.experiments[record];
         let mut samples = vec![0.0; if experiment.lines().is_some() { experiment.summary().samples } else { 0 }];
         let out = if samples.is_empty() { &mut *residuals } else { &mut samples };
-        self.simulate(self.plain(), record, p, &[], experiment.kept(), |before, samples, inside, seen| {
+        let simulate: Simulate<'_, f64> = &|motion, sampling, trajectory| match self.euler {
+            Some(euler) => euler(motion, sampling, trajectory),
+            None => self.plain(motion, sampling, trajectory),
+        };
+        self.simulate(simulate, record, p, &[], experiment.kept(), |before, samples, inside, seen| {
             let out = &mut out[before..before + inside.len()];
             self.write_residuals(record, p, samples, &seen.values()[inside], out);
         })?;
