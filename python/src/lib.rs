@@ -2,6 +2,8 @@
 
 use pyo3::prelude::*;
 
+mod law;
+
 /// Core of the package `fmm_friction`: arguments in, answers out.
 #[pymodule(gil_used = false)]
 mod _core {
@@ -14,6 +16,9 @@ mod _core {
 
     use fmm_cli::{Detail, Host, Refusal};
     use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::law::Law;
 
     /// Sees how far a command is, and stops it.
     #[pyclass(frozen)]
@@ -84,21 +89,31 @@ mod _core {
         }
     }
 
-    /// Answer of the program to `arguments`, of which the first is its command, by `files` that are not on the disk.
+    /// Answer of the program to `arguments`, of which the first is its command, by `files` that are not on the disk and
+    /// `laws` that are not in the catalogue. What a function of a law raised is raised again.
     #[pyfunction]
+    #[expect(clippy::needless_pass_by_value, reason = "arguments of Python are values")]
     fn answer(
         py: Python<'_>,
         arguments: Vec<OsString>,
         files: Vec<(PathBuf, Vec<u8>)>,
+        laws: Vec<Py<Law>>,
         watch: &Watch,
     ) -> PyResult<Answer> {
         let arguments = [OsString::from("fmm")].into_iter().chain(arguments);
         let found = py.detach(|| {
-            let host = Host::default().watched_by(|message| watch.see(message));
-            let host = files.into_iter().fold(host, |host, (name, bytes)| host.with_file(name, bytes));
+            let has_raised = || laws.iter().any(|law| law.get().has_raised());
+            let see = |message: &str| if has_raised() { ControlFlow::Break(()) } else { watch.see(message) };
+            let host = files
+                .into_iter()
+                .fold(Host::default().watched_by(see), |host, (name, bytes)| host.with_file(name, bytes));
+            let host = laws.iter().fold(host, |host, law| host.with_law(law.get().own()));
             fmm_cli::answer(arguments, &host)
         });
-        found.map(Answer).map_err(|refusal| raised(py, refusal))
+        match laws.iter().find_map(|law| law.get().take_raised()) {
+            Some(error) => Err(error),
+            None => found.map(Answer).map_err(|refusal| raised(py, refusal)),
+        }
     }
 
     /// An answer that cannot be given out.

@@ -1,0 +1,140 @@
+//! A law of friction whose formula is a function of Python.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use fmm_friction::{LawParameter, OwnLaw, Role, SpeedFormula};
+use fmm_model::{Bounds, Parameter};
+use numpy::{PyArray1, PyArrayLike1, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+/// Formula of a law, and its derivatives if they are known.
+#[derive(Debug)]
+struct Functions {
+    coefficient: Py<PyAny>,
+    derivatives: Option<Py<PyAny>>,
+    /// What a function raised first.
+    raised: Arc<Mutex<Option<PyErr>>>,
+}
+
+impl Functions {
+    /// Keeps what a function raised; without a number, the fit cannot go on.
+    fn kept<T>(&self, result: PyResult<T>) -> Option<T> {
+        result.map_err(|error| self.keep(error)).ok()
+    }
+
+    fn keep(&self, error: PyErr) {
+        let _ = self.raised.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    /// Numbers of an array, of one number for each of `points`, or of one for all.
+    fn numbers(found: &Bound<'_, PyAny>, points: usize, what: &str) -> PyResult<Vec<f64>> {
+        if let Ok(number) = found.extract::<f64>() {
+            return Ok(vec![number; points]);
+        }
+        let array: PyArrayLike1<'_, f64, numpy::AllowTypeChange> = found.extract()?;
+        let numbers = array.to_vec()?;
+        if numbers.len() == points {
+            return Ok(numbers);
+        }
+        let length = numbers.len();
+        Err(PyValueError::new_err(format!(
+            "{what} must give an array as long as its arguments, {points}, or a number, but gave one of length {length}"
+        )))
+    }
+}
+
+impl SpeedFormula for Functions {
+    fn coefficients(&self, arguments: &[Vec<f64>]) -> Vec<f64> {
+        let points = arguments.first().map_or(0, Vec::len);
+        let found = Python::attach(|py| {
+            let arrays = arguments.iter().map(|argument| PyArray1::from_slice(py, argument));
+            let found = PyTuple::new(py, arrays).and_then(|arrays| self.coefficient.bind(py).call1(arrays));
+            self.kept(found.and_then(|found| Self::numbers(&found, points, "the function of a law")))
+        });
+        found.unwrap_or_else(|| vec![f64::NAN; points])
+    }
+
+    fn derivatives(&self, arguments: &[f64]) -> Option<Vec<f64>> {
+        let derivatives = self.derivatives.as_ref()?;
+        let found = Python::attach(|py| {
+            let arrays = arguments.iter().map(|argument| PyArray1::from_slice(py, &[*argument]));
+            let found = PyTuple::new(py, arrays).and_then(|arrays| derivatives.bind(py).call1(arrays));
+            let numbers = found.and_then(|found| {
+                let each = found.try_iter()?.map(|one| Ok(Self::numbers(&one?, 1, "each derivative")?[0]));
+                let numbers: Vec<f64> = each.collect::<PyResult<_>>()?;
+                if numbers.len() == arguments.len() {
+                    return Ok(numbers);
+                }
+                let (given, wanted) = (numbers.len(), arguments.len());
+                let what = "the derivatives of a law are those by the speed and by each parameter";
+                Err(PyValueError::new_err(format!("{what}, {wanted}, but there are {given}")))
+            });
+            self.kept(numbers)
+        });
+        Some(found.unwrap_or_else(|| vec![f64::NAN; arguments.len()]))
+    }
+}
+
+/// A law of friction of one's own. It lives as long as the process.
+#[pyclass(frozen)]
+pub(crate) struct Law {
+    own: &'static OwnLaw,
+    raised: Arc<Mutex<Option<PyErr>>>,
+}
+
+#[pymethods]
+impl Law {
+    /// A law by its name, its parameters (name, unit, role, relative start value, bounds), its function, and that of its
+    /// derivatives.
+    #[new]
+    fn new(
+        name: String,
+        parameters: Vec<Stated>,
+        coefficient: Py<PyAny>,
+        derivatives: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let raised = Arc::<Mutex<Option<PyErr>>>::default();
+        let functions = Functions { coefficient, derivatives, raised: Arc::clone(&raised) };
+        let parameters = parameters.into_iter().map(parameter).collect::<PyResult<Vec<_>>>()?;
+        let law = OwnLaw::new(name, parameters, Box::new(functions));
+        let law = law.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Self { own: Box::leak(Box::new(law)), raised })
+    }
+}
+
+impl Law {
+    /// The law.
+    pub(crate) fn own(&self) -> &'static OwnLaw {
+        self.own
+    }
+
+    /// True if a function of it raised an exception that was not taken.
+    pub(crate) fn has_raised(&self) -> bool {
+        self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// The exception that a function of it raised.
+    pub(crate) fn take_raised(&self) -> Option<PyErr> {
+        self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// Name, unit, role, relative start value and bounds of a parameter.
+type Stated = (String, String, String, f64, (f64, f64));
+
+/// The parameter that is stated so.
+fn parameter((name, unit, role, typical, (lower, upper)): Stated) -> PyResult<LawParameter> {
+    let refused = |error: &dyn std::fmt::Display| PyValueError::new_err(format!("{name}: {error}"));
+    let role = match role.as_str() {
+        "level" => Role::Level,
+        "excess" => Role::Excess,
+        "slope" => Role::Slope,
+        "shape" => Role::Shape,
+        _ => return Err(refused(&format!("{role:?} is no role; there are level, excess, slope and shape"))),
+    };
+    let bounds = Bounds::new(lower, upper).map_err(|error| refused(&error))?;
+    let parameter = Parameter::named(name.clone(), name, unit).bounded(bounds);
+    Ok(LawParameter::new(parameter, role).typically(typical))
+}
