@@ -8,7 +8,7 @@ use super::source::{code, crates, files, first_names, text};
 const ROOMS: &[(&str, &str)] = &[
     (
         "fmm-cli",
-        "figure files host answer input output page backbone budget force frf batch posterior report identify scenario \
+        "refusal figure files host answer input output page backbone budget force frf batch posterior report identify scenario \
          design lists simulate commands schemas",
     ),
     (

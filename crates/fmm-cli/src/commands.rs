@@ -8,10 +8,11 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
-use crate::answer::{Answer, Refusal};
+use crate::answer::Answer;
 use crate::files::create_folder;
 use crate::host::Host;
 use crate::output::{Form, Output, Wanted, print, print_refusal};
+use crate::refusal::Refusal;
 use crate::{backbone, batch, budget, design, force, frf, identify, lists, simulate};
 
 /// Friction parameters out of ring-down, driven, force and impact records, with uncertainties that can be defended.

@@ -5,9 +5,16 @@ use std::path::Path;
 
 use serde::Serializer;
 
-/// Puts the path of a file before an error.
+use crate::refusal::{Kind, OfKind};
+
+/// Puts the path of a file before a sentence.
 pub(crate) fn named<E: Display>(path: &Path) -> impl Fn(E) -> String {
-    move |error| format!("{}: {error}", path.display())
+    move |sentence| format!("{}: {sentence}", path.display())
+}
+
+/// Says of an error that a path cannot be written.
+pub(crate) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> OfKind {
+    move |error| Kind::Unwritable.refusal(format!("cannot write {}: {error}", path.display()))
 }
 
 /// Name of a file without its folder.
@@ -49,20 +56,23 @@ pub(crate) mod exact {
 }
 
 /// Creates a folder unless it exists.
-pub(crate) fn create_folder(path: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(path).map_err(|error| format!("cannot create {}: {error}", path.display()))
+pub(crate) fn create_folder(path: &Path) -> Result<(), OfKind> {
+    let refused = |error| Kind::Unwritable.refusal(format!("cannot create {}: {error}", path.display()));
+    std::fs::create_dir_all(path).map_err(refused)
 }
 
 /// Refuses a path at which no file can be, before work is done for it.
-pub(crate) fn require_writable(path: &Path) -> Result<(), String> {
+pub(crate) fn require_writable(path: &Path) -> Result<(), OfKind> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() {
-        return Err(format!("cannot write {}: it is a folder; give the name of a file", path.display()));
+        let what = format!("cannot write {}: it is a folder; give the name of a file", path.display());
+        return Err(Kind::Unwritable.refusal(what));
     }
     if folder.is_dir() {
         Ok(())
     } else {
-        Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()))
+        let what = format!("cannot write {}: there is no folder {}", path.display(), folder.display());
+        Err(Kind::Unwritable.refusal(what))
     }
 }
 

@@ -15,7 +15,7 @@ use fmm_record::{DataFile, Reader, RecordError};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::de::DeserializeOwned;
 
-use crate::files::named;
+use crate::refusal::{Kind, placed};
 
 /// Sees how far a command is, from any thread, and may stop it.
 type Watcher<'a> = Box<dyn Fn(&str) -> ControlFlow<()> + Send + Sync + 'a>;
@@ -64,8 +64,8 @@ impl<'a> Host<'a> {
     }
 
     /// Bytes of a file; those of a pipe, or of standard input where the path is `-`, are read once and kept.
-    pub(crate) fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
-        let cannot = |error| format!("cannot read {}: {error}", path.display());
+    pub(crate) fn bytes(&self, path: &Path) -> Result<Vec<u8>, RecordError> {
+        let cannot = |error| RecordError::Io { what: format!("read {}", path.display()), source: Arc::new(error) };
         let mut kept = self.kept();
         if let Some(bytes) = kept.get(path) {
             return Ok(bytes.clone());
@@ -88,16 +88,13 @@ impl<'a> Host<'a> {
         if is_file(path) && !self.kept().contains_key(path) {
             return reader.open(path);
         }
-        let read = self.bytes(path).map_err(|error| RecordError::Io {
-            what: format!("read {}", path.display()),
-            source: Arc::new(std::io::Error::other(error)),
-        });
-        reader.parse(read?)
+        reader.parse(self.bytes(path)?)
     }
 
     /// Text of a file.
-    pub(crate) fn text(&self, path: &Path) -> Result<String, String> {
-        String::from_utf8(self.bytes(path)?).map_err(|error| format!("cannot read {}: {error}", path.display()))
+    pub(crate) fn text(&self, path: &Path) -> Result<String, Box<dyn Error>> {
+        let unreadable = |error| Kind::Unreadable.refusal(format!("cannot read {}: {error}", path.display()));
+        Ok(String::from_utf8(self.bytes(path)?).map_err(unreadable)?)
     }
 
     /// Result of the content of a file, which is JSON if its name ends so, and TOML otherwise.
@@ -108,12 +105,13 @@ impl<'a> Host<'a> {
     ) -> Result<T, Box<dyn Error>> {
         let text = self.text(path)?;
         let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        let wrong = |error: Box<dyn Error>| Kind::Document.unless_known(placed(path.display())(error));
         let file = if is_json {
-            serde_json::from_str(&text).map_err(named(path))?
+            serde_json::from_str(&text).map_err(|error| wrong(error.into()))?
         } else {
-            toml::from_str(&text).map_err(named(path))?
+            toml::from_str(&text).map_err(|error| wrong(error.into()))?
         };
-        Ok(of(file).map_err(named(path))?)
+        Ok(of(file).map_err(wrong)?)
     }
 
     /// Result of `work`, which tells how far it is by the function that it gets; refused if the watcher stopped it.
@@ -124,7 +122,11 @@ impl<'a> Host<'a> {
         let bar = self.bar()?;
         let done = work(&|message| self.told(&bar, message));
         bar.finish_and_clear();
-        if self.is_stopped.load(Ordering::Relaxed) { Err("stopped before the end".into()) } else { Ok(done) }
+        if self.is_stopped.load(Ordering::Relaxed) {
+            Err(Kind::Stopped.refusal("stopped before the end").into())
+        } else {
+            Ok(done)
+        }
     }
 
     /// Result of `work` of unknown length, of which only `what` it is can be told.

@@ -15,6 +15,7 @@ use crate::host::Host;
 use crate::input::{Choice, DRIVE, Given, Question};
 use crate::output::{Output, Wanted};
 use crate::posterior::Posterior;
+use crate::refusal::placed;
 use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
@@ -280,7 +281,7 @@ fn found(
         let preparation = given.preparation().gain_uncertainty(arguments.question.scale_u);
         let named = |error: Box<dyn Error>| match all.len() {
             1 => error,
-            _ => format!("{}: {error}", given.name()).into(),
+            _ => placed(given.name())(error).into(),
         };
         decays.push(experiment(arguments, &input.record, &preparation, host).map_err(named)?);
         origins.push(input.origin);

@@ -29,12 +29,14 @@ mod lists;
 mod output;
 pub mod page;
 mod posterior;
+mod refusal;
 mod report;
 mod scenario;
 #[cfg(test)]
 mod schemas;
 mod simulate;
 
-pub use answer::{Answer, Detail, Refusal};
+pub use answer::{Answer, Detail};
 pub use commands::{answer, run};
 pub use host::Host;
+pub use refusal::Refusal;

@@ -8,8 +8,9 @@ use std::path::PathBuf;
 use clap::Args;
 use fmm_model::{Estimated, Rounded};
 
-use crate::answer::{Answer, Detail, Document, Refusal, Refused};
+use crate::answer::{Answer, Detail, Document};
 use crate::files::{self, create_folder};
+use crate::refusal::{Kind, Refusal, Refused};
 
 /// Form of a result: text or JSON.
 #[derive(Debug, Clone, Default, Args)]
@@ -50,11 +51,11 @@ impl Wanted {
             return Ok(());
         }
         let path = path.display();
-        Err(format!(
+        let what = format!(
             "--report writes a page of HTML, but {path} is called otherwise; give a name that ends in .html, which a \
              browser prints as PDF"
-        )
-        .into())
+        );
+        Err(Kind::Option.refusal(what).into())
     }
 
     /// Prints an answer, and writes its figures and its page.
@@ -79,7 +80,7 @@ impl Wanted {
             eprintln!("figures: {}", folder.join(format!("{names}.svg")).display());
         }
         if let (Some(path), Some(page)) = (&self.report, self.report.as_ref().map_or(Ok(None), |_| answer.page())?) {
-            std::fs::write(path, page).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+            std::fs::write(path, page).map_err(files::unwritable(path))?;
             eprintln!("report: {}", path.display());
         }
         Ok(())

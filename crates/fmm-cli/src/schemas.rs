@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 
-use crate::answer::{Document, Refused};
+use crate::answer::Document;
+use crate::refusal::Refused;
 use crate::{backbone, batch, budget, design, force, frf, identify, lists, scenario};
 
 /// Name and schema of a document.

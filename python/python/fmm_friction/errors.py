@@ -9,8 +9,9 @@ class FmmError(ValueError):
     """Input that is refused, in the words of the program ``fmm``, with its options written as keywords.
 
     Attributes:
-        code: kind of the refusal, to act on: ``usage``, ``unreadable``, ``unclear``, ``contradiction``, ``channel``,
-            ``time``, ``values``, ``record``, ``name``, ``fit`` or ``refused``.
+        code: kind of the refusal, to act on: ``usage``, ``option``, ``document``, ``unreadable``, ``unwritable``,
+            ``unclear``, ``contradiction``, ``channel``, ``time``, ``values``, ``record``, ``name``, ``fit``,
+            ``simulation``, ``uncertainty``, ``stopped`` or ``refused``; ``docs/json.md`` explains them.
         message: what is wrong.
         remedy: what would be right, if it is known apart from the message.
     """

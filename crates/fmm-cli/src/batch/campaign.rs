@@ -14,6 +14,7 @@ use super::sheet::Sheet;
 use crate::files::{self, create_folder, named};
 use crate::host::Host;
 use crate::input::{DRIVES, Given, Input, Question};
+use crate::refusal::Kind;
 
 /// The records of a campaign, in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -80,13 +81,14 @@ impl Campaign {
         host: &Host<'_>,
     ) -> Result<Self, Box<dyn Error>> {
         let manifest = Manifest::read(path, host)?;
+        let wrong = |what: String| Kind::Document.refusal(named(path)(what));
         let command = RecordOptions::command();
         let is_option =
             |column: &str| command.get_arguments().any(|option| option.get_long() == Some(&column.replace('_', "-")));
         for column in
             manifest.columns.iter().filter(|column| ![FILE, EXCLUDE].contains(&column.as_str()) && !is_option(column))
         {
-            refuse_drive(column).and_then(|()| refuse_misspelt(column, &command)).map_err(named(path))?;
+            refuse_drive(column).and_then(|()| refuse_misspelt(column, &command)).map_err(wrong)?;
         }
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let entry = |cells: &Vec<String>| {
@@ -109,7 +111,7 @@ impl Campaign {
         let entries = manifest.records.iter().map(entry).collect();
         let campaign = Self { options, group: group.or(manifest.group), sheet: manifest.sheet, entries };
         if let Some(column) = &campaign.group {
-            campaign.require_column(column).map_err(named(path))?;
+            campaign.require_column(column).map_err(wrong)?;
         }
         Ok(campaign)
     }

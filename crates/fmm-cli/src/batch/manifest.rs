@@ -1,5 +1,6 @@
 //! The manifest of a campaign: its records as a table of CSV, or as a list of TOML.
 
+use std::error::Error;
 use std::path::Path;
 
 use toml::Spanned;
@@ -8,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::sheet::Sheet;
 use crate::files::named;
 use crate::host::Host;
+use crate::refusal::Kind;
 
 /// Content of a manifest, from CSV or TOML.
 #[derive(Debug)]
@@ -48,12 +50,13 @@ pub(super) fn exclusion(cell: &str) -> Option<String> {
 
 impl Manifest {
     /// Reads TOML if the name or the beginning of the file looks so, and CSV otherwise.
-    pub(super) fn read(path: &Path, host: &Host<'_>) -> Result<Self, String> {
+    pub(super) fn read(path: &Path, host: &Host<'_>) -> Result<Self, Box<dyn Error>> {
         let text = host.text(path)?;
         let read = if is_toml(path, &text) { Self::of_toml(&text) } else { Self::of_csv(&text) };
-        let manifest = read.and_then(Self::with_columns_once).map_err(named(path))?;
+        let wrong = |what: String| Kind::Document.refusal(named(path)(what));
+        let manifest = read.and_then(Self::with_columns_once).map_err(wrong)?;
         if manifest.records.is_empty() {
-            return Err(format!("{}: the manifest has no records", path.display()));
+            return Err(wrong("the manifest has no records".to_owned()).into());
         }
         Ok(manifest)
     }

@@ -19,6 +19,7 @@ use crate::files::named;
 use crate::host::Host;
 use crate::input::{Held, limit};
 use crate::output::{Output, of_size};
+use crate::refusal::Kind;
 use clap::Args;
 use columns::Columns;
 pub(crate) use document::Content;
@@ -191,7 +192,7 @@ fn described(
     let law_of = |model: &str| model.split(['+', ',']).next().unwrap_or_default().trim().to_owned();
     let stray = |held: &&Held| held.law.as_ref().is_some_and(|law| models.iter().all(|model| law_of(model) != *law));
     if let Some(Held { law: Some(law), name, .. }) = arguments.hold.iter().find(stray) {
-        return Err(format!("--hold {law}.{name}: {law} is the law of no model").into());
+        return Err(Kind::Name.refusal(format!("--hold {law}.{name}: {law} is the law of no model")).into());
     }
     let mut described = Vec::with_capacity(models.len());
     for name in &models {

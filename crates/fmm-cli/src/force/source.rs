@@ -7,11 +7,11 @@ use clap::Args;
 use fmm_identify::ForceRecord;
 use fmm_record::{Column, DataFile, Label, Reader, RecordError, WrittenUnit};
 
-use crate::files::named;
 use crate::force::columns::{Columns, FORCE, LOAD, POSITION, Role, VELOCITY};
 use crate::force::series::Series;
 use crate::host::Host;
 use crate::input::Layout;
+use crate::refusal::{Kind, placed};
 
 /// Columns of a table by their meaning.
 #[derive(Debug, Clone, Args)]
@@ -87,7 +87,7 @@ struct Part {
 impl Source {
     /// The record in the table at `path`.
     pub(crate) fn read(&self, path: &Path, host: &Host<'_>) -> Result<Table, Box<dyn Error>> {
-        self.table(path, host).map_err(|error| named(path)(error).into())
+        self.table(path, host).map_err(|error| placed(path.display())(error).into())
     }
 
     /// The record in the table at `path`. The first sample alone tells the columns: gaps further on matter where they
@@ -104,24 +104,25 @@ impl Source {
         let labels: Vec<Label> = names.iter().map(|name| Label::of(name)).collect();
         let missing =
             |what: &str| format!("no column is the {what}; name it by --{what}; there are: {}", names.join(", "));
+        let no_column = |what: String| Kind::Channel.refusal(what);
         let mut columns = Columns::default();
         let remarks = &mut columns.remarks;
-        let force = FORCE.column(self.force.as_ref(), &labels, remarks)?.ok_or_else(|| missing("force"))?;
+        let force = FORCE.column(self.force.as_ref(), &labels, remarks)?.ok_or_else(|| no_column(missing("force")))?;
         let position = POSITION.column(self.position.as_ref(), &labels, remarks)?;
         let velocity = VELOCITY.column(self.velocity.as_ref(), &labels, remarks)?;
         if position.is_none() && velocity.is_none() {
-            return Err(format!(
+            return Err(no_column(format!(
                 "no column is a position or a velocity, along which friction acts; name one by --position or \
                  --velocity; there are: {}",
                 names.join(", ")
-            )
+            ))
             .into());
         }
         let time = self.time.as_deref().map(Column::from).or(offered.time.map(Column::Name));
         let time = time.filter(|_| self.rate.is_none());
         let is_timeless = time.is_none() && self.rate.is_none();
         if is_timeless && (position.is_some() || self.from.is_some() || self.to.is_some()) {
-            return Err(format!("{}; or say the sampling rate by --rate", missing("time")).into());
+            return Err(no_column(format!("{}; or say the sampling rate by --rate", missing("time"))).into());
         }
         if is_timeless {
             remarks.push(
@@ -221,7 +222,7 @@ impl Source {
             }
             (None, Some(rate)) => {
                 if !(rate > 0.0 && rate.is_finite()) {
-                    return Err(format!("--rate {rate}: give a positive number of Hz").into());
+                    return Err(Kind::Option.refusal(format!("--rate {rate}: give a positive number of Hz")).into());
                 }
                 // A gap leaves the number of samples as it is.
                 let count =
@@ -288,7 +289,8 @@ fn read(
     let reading = file.channel(column.clone()).map_err(|error| at_its_time(column, error, times))?;
     let label = Label::from(&reading);
     if let Some(unit) = label.unknown_unit() {
-        return Err(format!("{} is in \"{unit}\", which is no unit that is known; convert it", reading.channel).into());
+        let what = format!("{} is in \"{unit}\", which is no unit that is known; convert it", reading.channel);
+        return Err(Kind::Unclear.refusal(what).into());
     }
     let unit = unit(&label)?;
     let factor = unit.as_ref().map_or(1.0, WrittenUnit::factor);

@@ -11,6 +11,7 @@ use fmm_frf::{
 use fmm_record::{Record, saturation};
 
 use super::trials::Trial;
+use crate::refusal::placed;
 
 /// Samples before and after the highest one over which the force is integrated, if the pulse itself is not longer.
 const AROUND: (usize, usize) = (40, 60);
@@ -78,7 +79,7 @@ impl Analysis {
         let mut warnings = Vec::new();
         let (mut pulses, mut impulses) = (Vec::new(), Vec::new());
         for trial in trials {
-            let (pulse, impulse) = blow(&trial.force).map_err(|error| format!("{}: {error}", trial.name))?;
+            let (pulse, impulse) = blow(&trial.force).map_err(placed(&trial.name))?;
             doubts(trial, &pulse, window, &mut warnings);
             pulses.push(pulse);
             impulses.push(impulse);
@@ -86,7 +87,7 @@ impl Analysis {
         let (options, window) = options(&pulses, &first.force, window, end)?;
         let mut average = TrialAverage::new(form, rate, length, &options)?;
         for trial in trials {
-            average.add_records(&trial.force, &trial.response).map_err(|error| format!("{}: {error}", trial.name))?;
+            average.add_records(&trial.force, &trial.response).map_err(placed(&trial.name))?;
         }
         let (h1, h2) = (average.estimate(Estimator::H1)?, average.estimate(Estimator::H2)?);
         let coherence = average.coherence()?;

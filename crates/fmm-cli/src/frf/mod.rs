@@ -16,9 +16,9 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use crate::answer::{Answer, Detail, Document};
-use crate::files::named;
 use crate::host::Host;
 use crate::output::Output;
+use crate::refusal::placed;
 use analysis::{Analysis, Window};
 use clap::Args;
 use fmm_frf::{FrequencyResponse, RationalFit, ResponseForm};
@@ -231,7 +231,7 @@ pub(crate) fn frf(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn Answ
 }
 
 fn found(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
-    let read = |path: &PathBuf| arguments.channels.read(path, host).map_err(named(path));
+    let read = |path: &PathBuf| arguments.channels.read(path, host).map_err(placed(path.display()));
     let trials = arguments.files.iter().map(read).collect::<Result<Vec<Trial>, _>>()?;
     let form = form(&trials)?;
     let analysis = host.while_busy("averaging and fitting modes", || {

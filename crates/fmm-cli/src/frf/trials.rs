@@ -9,6 +9,7 @@ use fmm_record::{Channel, Column, Label, Quantity, Reading, Record};
 use crate::files;
 use crate::host::Host;
 use crate::input::{Layout, in_options, is_motion, motion};
+use crate::refusal::Kind;
 
 /// One blow.
 pub(crate) struct Trial {
@@ -77,12 +78,12 @@ impl Channels {
         // A spectrum, or a record with faults, is not to be taken unless it is asked for.
         let is_known = offers.iter().any(|offer| offer.rate.is_some());
         let is_series = |offer: &Channel| offer.rate.is_some() || !is_known;
+        let missing = |what: String| Kind::Channel.refusal(what);
         let given = |choice: &str| {
             if let Ok(index) = choice.parse::<usize>() {
-                return offers
-                    .get(index)
-                    .map(key)
-                    .ok_or_else(|| format!("there is no channel {index}; there are, counted from 0: {}", all()));
+                return offers.get(index).map(key).ok_or_else(|| {
+                    missing(format!("there is no channel {index}; there are, counted from 0: {}", all()))
+                });
             }
             let called: Vec<&Channel> = offers.iter().filter(|offer| offer.label.name() == choice).collect();
             // What is not on offer may still be another way to write it; if not, the reader says what there is.
@@ -96,10 +97,10 @@ impl Channels {
             let called = || unknown.clone().find(|offer| offer.label.name().to_lowercase().contains(&word));
             let found = measured.or_else(called).or_else(|| unknown.next()).map(key);
             found.ok_or_else(|| {
-                format!(
+                missing(format!(
                     "which channel is the {word}? Name it, or say with --quantity what the response is; there are: {}",
                     all()
-                )
+                ))
             })
         };
         let force = self.force.as_deref().map_or_else(|| found(Quantity::Force, None), given)?;
@@ -108,7 +109,10 @@ impl Channels {
         };
         let moving = || offers.iter().find(moves).map(key);
         let silent = || {
-            format!("no channel says what the response measured; give --quantity; there are, counted from 0: {}", all())
+            Kind::Unclear.refusal(format!(
+                "no channel says what the response measured; give --quantity; there are, counted from 0: {}",
+                all()
+            ))
         };
         let response = match (self.response.as_deref(), self.quantity) {
             (Some(choice), _) => given(choice)?,
@@ -118,7 +122,9 @@ impl Channels {
         if force == response {
             let name = offers.iter().find(|offer| key(offer) == force).map(|offer| offer.label.name().to_owned());
             let name = name.or(self.force.clone()).unwrap_or_default();
-            return Err(format!("channel {name} cannot be both force and response").into());
+            return Err(Kind::Contradiction
+                .refusal(format!("channel {name} cannot be both force and response"))
+                .into());
         }
         let written =
             || self.response.as_deref().and_then(|name| Label::of(name).quantity()).filter(|told| is_motion(*told));
@@ -144,7 +150,8 @@ fn in_si(reading: &Reading, quantity: Quantity, scale: Option<f64>, option: &str
     let (channel, found) = (&reading.channel, reading.record.quantity());
     // A file that does not say what it measured leaves it to the caller.
     if found != quantity && found != Quantity::Other {
-        return Err(format!("the file says that {channel} is a {found}, and no {quantity}").into());
+        let what = format!("the file says that {channel} is a {found}, and no {quantity}");
+        return Err(Kind::Contradiction.refusal(what).into());
     }
     let (unit, label) = (unit(quantity), Label::from(reading));
     let stated = label.unit().map(ToString::to_string).or_else(|| label.unknown_unit().map(str::to_owned));

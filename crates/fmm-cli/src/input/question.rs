@@ -12,6 +12,7 @@ use fmm_model::Restoring;
 use fmm_record::{Quantity, Record};
 
 use crate::host::Host;
+use crate::refusal::{Kind, OfKind};
 
 /// The machine, the laws and the sensor.
 #[derive(Debug, Clone, Args)]
@@ -93,15 +94,15 @@ impl Question {
     }
 
     /// The same question under each of these normal loads (N) in place of its own, or as it is for none.
-    pub(crate) fn under(&self, loads: &[f64], records: usize) -> Result<Vec<Self>, String> {
+    pub(crate) fn under(&self, loads: &[f64], records: usize) -> Result<Vec<Self>, OfKind> {
         if loads.is_empty() {
             return Ok(vec![self.clone(); records]);
         }
         if loads.len() != records {
             let given = loads.len();
-            return Err(format!(
+            return Err(Kind::Contradiction.refusal(format!(
                 "--normal-loads has {given} load(s) for {records} record(s); give one for each record"
-            ));
+            )));
         }
         Ok(loads.iter().map(|load| Self { normal_load: Some(*load), ..self.clone() }).collect())
     }
@@ -121,7 +122,8 @@ impl Question {
     fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
         let mut machine = match (self.mass, self.stiffness) {
             (Some(_), Some(_)) if !force_is_measured => {
-                return Err("give --mass or --stiffness: a vibration shows the other one".into());
+                let what = "give --mass or --stiffness: a vibration shows the other one";
+                return Err(Kind::Contradiction.refusal(what).into());
             }
             (Some(mass), Some(stiffness)) => Machine::of_mass_and_stiffness(
                 known("--mass", mass, self.mass_u)?,
@@ -166,7 +168,8 @@ impl Question {
                 }
             }
             if let (false, Some(law)) = (is_meant, law) {
-                return Err(format!("--hold {law}.{name}: {law} is none of the laws to compare").into());
+                let what = format!("--hold {law}.{name}: {law} is none of the laws to compare");
+                return Err(Kind::Name.refusal(what).into());
             }
         }
         Ok(candidates)
@@ -175,11 +178,11 @@ impl Question {
     /// The same where laws are compared and not searched: viscous, dry and both unless others are named.
     pub(crate) fn compared(&self, host: &Host<'_>) -> Result<Vec<Candidate>, Box<dyn Error>> {
         if let Some(seconds) = self.time_limit {
-            return Err(format!(
-                "--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison \
-                                fits all its laws"
-            )
-            .into());
+            let what = format!(
+                "--time-limit {seconds} is for the search of `fmm identify` without --law; a comparison fits all its \
+                 laws"
+            );
+            return Err(Kind::Contradiction.refusal(what).into());
         }
         if self.law.is_empty() {
             return Self { law: vec!["all".to_owned()], ..self.clone() }.candidates(host);
@@ -195,9 +198,11 @@ impl Question {
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {
         let mut all: Vec<Held> = Vec::with_capacity(self.hold.len());
         for text in &self.hold {
-            let held: Held = text.parse().map_err(|error| format!("--hold {text}: {error}"))?;
+            let refused = |error| Kind::Option.refusal(format!("--hold {text}: {error}"));
+            let held: Held = text.parse().map_err(refused)?;
             if let Some(other) = all.iter().find(|other| (&other.law, &other.name) == (&held.law, &held.name)) {
-                return Err(format!("--hold {text}: {} is held at {} already", held.name, other.value).into());
+                let what = format!("--hold {text}: {} is held at {} already", held.name, other.value);
+                return Err(Kind::Contradiction.refusal(what).into());
             }
             all.push(held);
         }
@@ -210,7 +215,7 @@ impl Question {
             return Ok(candidate);
         }
         let named = Self { law: vec![law.replace(" of any sign", " + any sign")], ..self.clone() };
-        named.candidates(host)?.pop().ok_or_else(|| format!("there is no law called {law}").into())
+        named.candidates(host)?.pop().ok_or_else(|| Kind::Name.refusal(format!("there is no law called {law}")).into())
     }
 
     /// Inputs of the machine that are declared, by their names, with value and standard uncertainty in their units.
@@ -237,8 +242,9 @@ impl Question {
 
     /// Question to several records as one problem: that of the first record, and the normal load of each over that of
     /// the first. Refused where they state more than one machine.
-    pub(crate) fn together(questions: &[(Self, String)]) -> Result<(Self, Vec<f64>), String> {
-        let (first, name) = questions.first().ok_or("there is no record")?;
+    pub(crate) fn together(questions: &[(Self, String)]) -> Result<(Self, Vec<f64>), OfKind> {
+        let contradiction = |what: String| Kind::Contradiction.refusal(what);
+        let (first, name) = questions.first().ok_or_else(|| contradiction("there is no record".to_owned()))?;
         let mut factors = Vec::with_capacity(questions.len());
         let mut relative = 0.0_f64;
         for (question, other) in questions {
@@ -259,11 +265,11 @@ impl Question {
             let differs =
                 of_machine(first).into_iter().zip(of_machine(question)).find(|(own, theirs)| own.1 != theirs.1);
             if let Some(((option, own), (_, theirs))) = differs {
-                return Err(format!(
+                return Err(contradiction(format!(
                     "one machine is fitted to all, but {option} is {} for {name} and {} for {other}",
                     words(own),
                     words(theirs)
-                ));
+                )));
             }
             factors.push(match (first.normal_load, question.normal_load) {
                 (None, None) => 1.0,
@@ -272,12 +278,12 @@ impl Question {
                     theirs / own
                 }
                 (own, theirs) => {
-                    return Err(format!(
+                    return Err(contradiction(format!(
                         "a joint fit needs the normal load of all records or of none, but it is {} for {name} and {} \
                          for {other}",
                         words(own),
                         words(theirs)
-                    ));
+                    )));
                 }
             });
         }
@@ -296,7 +302,7 @@ impl Question {
     ) -> Result<Comparison, Box<dyn Error>> {
         let is_force =
             |decay: &Experiment| decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force);
-        let machine = self.machine(decays.iter().any(is_force))?;
+        let machine = self.machine(decays.iter().any(is_force)).map_err(|error| Kind::Option.unless_known(error))?;
         let mut inquiry = Inquiry::of(&machine, decays).observed_by(show);
         if !candidates.is_empty() {
             return Ok(inquiry.among(candidates)?);
@@ -312,13 +318,14 @@ impl Question {
 }
 
 /// Time of a --time-limit.
-pub(crate) fn limit(seconds: f64) -> Result<Duration, String> {
-    Duration::try_from_secs_f64(seconds).map_err(|_| format!("--time-limit {seconds}: give seconds"))
+pub(crate) fn limit(seconds: f64) -> Result<Duration, OfKind> {
+    let refused = |_| Kind::Option.refusal(format!("--time-limit {seconds}: give seconds"));
+    Duration::try_from_secs_f64(seconds).map_err(refused)
 }
 
 /// Value of an option with its uncertainty.
-fn known(option: &str, value: f64, uncertainty: f64) -> Result<Known, String> {
-    Known::new(value, uncertainty).map_err(|error| format!("{option}: {error}"))
+fn known(option: &str, value: f64, uncertainty: f64) -> Result<Known, OfKind> {
+    Known::new(value, uncertainty).map_err(|error| Kind::Option.refusal(format!("{option}: {error}")))
 }
 
 /// A parameter that is held, of one law or of all.

@@ -10,9 +10,9 @@ use fmm_record::{
     Column, DataFile, Format, Label, Quantity, Reader, Reading, Record, RecordError, Request, WrittenUnit,
 };
 
-use crate::answer::Remedied;
 use crate::files;
 use crate::host::Host;
+use crate::refusal::{Kind, Remedied};
 
 /// The record to identify, and how it was read.
 pub(crate) struct Input {
@@ -153,7 +153,8 @@ impl Choice {
     /// Reads a file of any format.
     pub(crate) fn read(&self, path: &Path, host: &Host<'_>) -> Result<Input, Box<dyn Error>> {
         if path.is_dir() {
-            return Err(format!("{} is a folder; `fmm batch` takes the records in one", path.display()).into());
+            let what = format!("{} is a folder; `fmm batch` takes the records in one", path.display());
+            return Err(Kind::Unreadable.refusal(what).into());
         }
         let (reading, file) = self.reading(|reader| host.open(reader, path))?;
         let mut warnings: Vec<String> =
@@ -228,12 +229,12 @@ impl Choice {
     ) -> Result<Input, Box<dyn Error>> {
         let meaning = self.request().meaning(label).map_err(|error| self.with_remedy(error))?;
         if !is_motion(meaning.quantity) && !self.is_drive {
-            return Err(format!(
+            return Err(Kind::Channel.refusal(format!(
                 "channel \"{}\" is a record of {}, and friction is fitted to a velocity, a displacement or an \
                  acceleration: give one of these by --channel",
                 label.name(),
                 meaning.quantity
-            )
+            ))
             .into());
         }
         let (file, channel) = (files::name(path), label.name());

@@ -14,9 +14,9 @@ use clap::Args;
 
 use crate::answer::{Answer, Detail, Document};
 use crate::figure::{ends, label};
-use crate::files;
 use crate::host::Host;
 use crate::output::Output;
+use crate::refusal::{Kind, placed};
 use crate::scenario::{Motion, Simulation};
 
 /// Simulates a machine with a sliding contact.
@@ -41,8 +41,9 @@ pub(crate) struct Simulated {
 pub(crate) fn simulate(arguments: &Arguments, host: &Host<'_>) -> Result<Simulated, Box<dyn Error>> {
     let path = &arguments.scenario;
     let text = host.text(path)?;
-    let scenario = Simulation::read(&text).map_err(files::named(path))?;
-    let motion = host.while_busy("simulating", || scenario.run().map_err(files::named(path)))??;
+    let wrong = |error: Box<dyn Error>| Kind::Document.unless_known(placed(path.display())(error));
+    let scenario = Simulation::read(&text).map_err(wrong)?;
+    let motion = host.while_busy("simulating", || scenario.run().map_err(placed(path.display())))??;
     let written = arguments.record.write(&scenario, &motion)?;
     Ok(Simulated { scenario: text, motion, written })
 }

@@ -8,6 +8,7 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::files::named;
+use crate::refusal::{Kind, OfKind};
 use crate::scenario::{Motion, Simulation};
 
 /// A table of the motion, as `fmm identify` reads it.
@@ -26,12 +27,13 @@ pub(super) struct Record {
 
 impl Record {
     /// Writes the table, if it is asked for, and tells where.
-    pub(super) fn write(&self, scenario: &Simulation, motion: &Motion) -> Result<Option<String>, String> {
+    pub(super) fn write(&self, scenario: &Simulation, motion: &Motion) -> Result<Option<String>, OfKind> {
         let Some(path) = &self.file else { return Ok(None) };
         if !(self.noise >= 0.0 && self.noise.is_finite()) {
-            return Err(format!("--noise {}: give a share of the largest value, such as 0.001", self.noise));
+            let what = format!("--noise {}: give a share of the largest value, such as 0.001", self.noise);
+            return Err(Kind::Option.refusal(what));
         }
-        self.table(path, scenario, motion).map_err(named(path))?;
+        self.table(path, scenario, motion).map_err(|error| Kind::Unwritable.refusal(named(path)(error)))?;
         Ok(Some(format!("record: {}", path.display())))
     }
 

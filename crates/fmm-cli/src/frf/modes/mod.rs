@@ -15,9 +15,10 @@ use fmm_frf::{FrfError, ModalFit, ModalOptions, Mode};
 use fmm_model::{Estimated, Rounded};
 use fmm_record::uff::{Form, write};
 
-use crate::answer::{Answer, Detail, Document, Remedied};
+use crate::answer::{Answer, Detail, Document};
 use crate::files::require_writable;
 use crate::host::Host;
+use crate::refusal::Remedied;
 pub(crate) use document::Content;
 pub(crate) use source::Measured;
 

@@ -8,10 +8,11 @@ use fmm_record::uff::{FunctionType, UffFile};
 use fmm_record::{Column, DataFile, Format, Quantity, RecordError};
 
 use super::{Choices, Remedied};
-use crate::files::{self, named};
+use crate::files;
 use crate::frf::Found as OfTrials;
 use crate::frf::trials::Channels;
 use crate::host::Host;
+use crate::refusal::placed;
 
 /// Responses, and where they come from.
 pub(crate) struct Measured {
@@ -160,6 +161,6 @@ fn of_file(path: &Path, error: FrfError) -> Box<dyn Error> {
             let error = FrfError::Values { what: at(what) };
             Remedied::new(error, "leave these lines out of the file").into()
         }
-        other => named(path)(other).into(),
+        other => placed(path.display())(other).into(),
     }
 }

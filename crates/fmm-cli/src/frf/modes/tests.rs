@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::answer::{Answer, Detail, Refusal};
+use crate::answer::{Answer, Detail};
 use crate::commands::answer;
 use crate::frf::tests::npy;
 use crate::host::Host;
+use crate::refusal::Refusal;
 
 /// The responses of a chain of six masses, with noise, as another program wrote them.
 const CHAIN: &str = "../fmm-frf/tests/data/chain_of_six.uff";
