@@ -48,7 +48,7 @@ def main() -> None:
         call = python_too()._call
 
         def rust_alone(call: Call = call) -> str:
-            return _core.answer(call.arguments, call.files, _core.Watch()).document(False)
+            return _core.answer(call.arguments, call.files, [], _core.Watch()).document(False)
 
         rust, python = least(rust_alone, python_too)
         print(

@@ -11,6 +11,7 @@ from importlib.metadata import version as _version
 
 from .commands import backbone, batch, budget, compare, design, force, formats, frf, identify, laws, simulate
 from .errors import FmmError
+from .law import Law, Parameter
 from .results import (
     Backbone,
     Budget,
@@ -22,6 +23,7 @@ from .results import (
     Force,
     FrequencyResponse,
     Identification,
+    Modes,
     Motion,
     Result,
 )
@@ -40,7 +42,10 @@ __all__ = [
     "Force",
     "FrequencyResponse",
     "Identification",
+    "Law",
+    "Modes",
     "Motion",
+    "Parameter",
     "Result",
     "backbone",
     "batch",

@@ -1,6 +1,7 @@
 """Core of the package: arguments of the program in, answers out."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 class Watch:
     """Sees how far a command is, and stops it."""
@@ -22,4 +23,17 @@ class Answer:
     @property
     def failure(self) -> str | None: ...
 
-def answer(arguments: Sequence[str], files: Sequence[tuple[str, bytes]], watch: Watch) -> Answer: ...
+class Law:
+    """A law of friction of one's own."""
+
+    def __init__(
+        self,
+        name: str,
+        parameters: Sequence[tuple[str, str, str, float, tuple[float, float]]],
+        coefficient: Callable[..., Any],
+        derivatives: Callable[..., Any] | None,
+    ) -> None: ...
+
+def answer(
+    arguments: Sequence[str], files: Sequence[tuple[str, bytes]], laws: Sequence[Law], watch: Watch
+) -> Answer: ...

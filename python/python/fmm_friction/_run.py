@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
+from .law import Law
 
 #: Called with a sentence on how far a command is, a few times a second.
 Progress = Callable[[str], None]
@@ -24,10 +25,11 @@ _LOOK = 0.1
 
 @dataclass
 class Call:
-    """One call of the program: its arguments, and files that are not on the disk, by name."""
+    """One call of the program: its arguments, files that are not on the disk, by name, and laws of one's own."""
 
     arguments: list[str]
     files: list[tuple[str, bytes]] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
 
     def answer(self, progress: Progress | None = None) -> _core.Answer:
         """Runs the call in a thread of its own, so that Ctrl-C and ``progress`` are served meanwhile."""
@@ -37,7 +39,7 @@ class Call:
 
         def work() -> None:
             try:
-                done.append(_core.answer(self.arguments, self.files, watch))
+                done.append(_core.answer(self.arguments, self.files, [law.core for law in self.laws], watch))
             except BaseException as error:
                 failed.append(error)
 
@@ -69,7 +71,7 @@ def options(keywords: Mapping[str, Any]) -> list[str]:
             given.append(option)
         elif isinstance(value, Mapping):
             given.extend(f"{option}={key}={_text(one)}" for key, one in value.items())
-        elif isinstance(value, (list, tuple)):
+        elif isinstance(value, (list, tuple, np.ndarray)):
             # Order and corner of a filter are the one pair that the program writes with a colon.
             sign = ":" if name == "low_pass" else ","
             given.append(f"{option}={sign.join(_text(one) for one in value)}")
@@ -106,6 +108,16 @@ def document(name: str, content: object) -> tuple[str, list[tuple[str, bytes]]]:
         return os.fspath(content), []
     file = f"{name}.json"
     return file, [(file, json.dumps(content).encode())]
+
+
+def is_path(given: object) -> bool:
+    """True for the path of a file."""
+    return isinstance(given, (str, os.PathLike))
+
+
+def are_paths(given: object) -> bool:
+    """True for paths of files."""
+    return isinstance(given, (list, tuple)) and len(given) > 0 and all(is_path(one) for one in given)
 
 
 def paths(files: object) -> list[str]:

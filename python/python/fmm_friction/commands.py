@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import results
-from ._run import Call, Progress, document, options, paths, table
+from ._run import Call, Progress, are_paths, document, is_path, options, paths, table
+from .law import own
 from .options import ForceOptions, FreeOptions, FrfOptions, IdentifyOptions, Path, RecordOptions, check
 
 if TYPE_CHECKING:
@@ -30,14 +30,29 @@ def _told(progress: Progress | bool) -> Progress | None:
     return progress or None
 
 
-def _is_path(given: object) -> bool:
-    return isinstance(given, (str, os.PathLike))
+#: Several records: paths, or times and values, by name or in their order.
+Records = Sequence[Path] | Sequence[tuple[ArrayLike, ArrayLike]] | Mapping[str, tuple[ArrayLike, ArrayLike]]
+
+
+def _tables(records: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> list[tuple[str, bytes]]:
+    """Files in memory of several records that are arrays."""
+    return [table(name, {"time": t, "y": y}) for name, (t, y) in records.items()]
+
+
+def _are_pairs(given: object) -> bool:
+    """True for pairs of arrays, such as times and values of several records."""
+    is_pair = [isinstance(one, tuple) and len(one) == 2 and np.ndim(one[0]) > 0 for one in _listed(given)]
+    return bool(is_pair) and all(is_pair)
+
+
+def _listed(given: object) -> Sequence[object]:
+    return given if isinstance(given, (list, tuple)) else ()
 
 
 def _record(
-    function: str, t: ArrayLike | Path | None, y: ArrayLike | None, others: Mapping[str, tuple[str, Any]]
+    function: str, t: ArrayLike | Path | Records | None, y: ArrayLike | None, others: Mapping[str, tuple[str, Any]]
 ) -> tuple[list[str], list[tuple[str, bytes]], list[str]]:
-    """Path, files and options of a record that is a path, arrays, or the bundled one.
+    """Paths, files and options of a record that is a path, arrays, or the bundled one, or of several records.
 
     ``others`` are further channels: option, and name of a column or array with the name of its column.
     """
@@ -51,10 +66,14 @@ def _record(
         else:
             columns[name] = channel
             given.append(f"--{option}={name}")
-    if (t is None and y is None) or _is_path(t):
+    pairs = isinstance(t, Mapping) or (y is None and _are_pairs(t))
+    if (t is None and y is None) or is_path(t) or are_paths(t) or pairs:
         if y is not None or columns:
-            raise TypeError(f"{function}() takes a file or arrays, and channels of a file are named, not given")
-        return ([] if t is None else paths(t)), [], given
+            raise TypeError(f"{function}() takes files or arrays, and channels of a file are named, not given")
+        if t is None or not pairs:
+            return ([] if t is None else paths(t)), [], given
+        files = _tables(t if isinstance(t, Mapping) else {f"record {i}": one for i, one in enumerate(t, 1)})  # type: ignore[misc, arg-type]
+        return [name for name, _ in files], files, [*given, "--channel=y", "--time=time"]
     if y is None:
         raise TypeError(f"{function}() needs y, the measured values, beside the times")
     columns["y"] = y
@@ -66,7 +85,7 @@ def _record(
 
 
 def identify(
-    t: ArrayLike | Path | None = None,
+    t: ArrayLike | Path | Records | None = None,
     y: ArrayLike | None = None,
     *,
     force: ArrayLike | str | int | None = None,
@@ -80,7 +99,8 @@ def identify(
 
     Args:
         t: times in s, shape (n,), or the path of a file, or ``None`` for values at a ``rate``. With neither ``t`` nor
-            ``y`` the bundled record of a bicycle fork is taken.
+            ``y`` the bundled record of a bicycle fork is taken. Several records of one machine are fitted together: a
+            list of paths, or, without ``y``, of pairs of times and values, or pairs by name.
         y: displacement, velocity or acceleration in ``unit``, shape (n,). Give ``quantity``, ``unit`` or both.
         force: measured force that drives the machine in N, shape (n,), or the channel of the file.
         base: measured motion of the base that drives the machine in ``base_unit``, shape (n,), or the channel.
@@ -104,7 +124,7 @@ def identify(
 
 
 def compare(
-    t: ArrayLike | Path | None = None,
+    t: ArrayLike | Path | Records | None = None,
     y: ArrayLike | None = None,
     *,
     force: ArrayLike | str | int | None = None,
@@ -123,7 +143,7 @@ def compare(
 
 def _identified(
     command: str,
-    t: ArrayLike | Path | None,
+    t: ArrayLike | Path | Records | None,
     y: ArrayLike | None,
     force: ArrayLike | str | int | None,
     base: ArrayLike | str | int | None,
@@ -136,7 +156,7 @@ def _identified(
     name = "base" if base_unit is None else f"base [{base_unit}]"
     others = {"force": ("force [N]", force), "base": (name, base), "impact": ("impact [N]", impact)}
     record, files, channels = _record(command, t, y, others)
-    call = Call([command, *channels, *options(keywords), "--", *record], files)
+    call = Call([command, *channels, *options(keywords), "--", *record], files, own(keywords.get("law")))
     return results.Identification(call, call.answer(_told(progress)))
 
 
@@ -199,13 +219,13 @@ def force(
     named = {"position": position, "velocity": velocity, "force": force, "load": load}
     others = paths(validate) if validate is not None else []
     given = [*options(keywords), *(f"--validate={other}" for other in others)]
-    is_listed = isinstance(t, (list, tuple)) and len(t) > 0 and all(_is_path(one) for one in t)
-    if _is_path(t) or is_listed:
+    laws = own(keywords.get("model"))
+    if is_path(t) or are_paths(t):
         for name, column in named.items():
             if column is not None and not isinstance(column, (str, int)):
                 raise TypeError(f"force() takes files or arrays: name the column of {name}")
         given += options({**named, "channels": None if channels is None else list(channels)})
-        call = Call(["force", *given, "--", *paths(t)])
+        call = Call(["force", *given, "--", *paths(t)], laws=laws)
         return results.Force(call, call.answer(_told(progress)))
     columns: dict[str, ArrayLike] = {}
     if t is not None:
@@ -220,8 +240,32 @@ def force(
             raise TypeError("force() takes channels of arrays by name, as in channels={'brake': values}")
         columns.update(channels)
         given.append(f"--channels={','.join(channels)}")
-    call = Call(["force", *given, "--", _ARRAYS], [table(_ARRAYS, columns)])
+    call = Call(["force", *given, "--", _ARRAYS], [table(_ARRAYS, columns)], laws)
     return results.Force(call, call.answer(_told(progress)))
+
+
+@overload
+def frf(
+    files: Path | Sequence[Path] | None = None,
+    *,
+    force: ArrayLike | Sequence[ArrayLike] | str | int | None = None,
+    response: ArrayLike | Sequence[ArrayLike] | str | int | None = None,
+    modes: Literal[False] = False,
+    progress: Progress | bool = False,
+    **keywords: Unpack[FrfOptions],
+) -> results.FrequencyResponse: ...
+
+
+@overload
+def frf(
+    files: Path | Sequence[Path] | None = None,
+    *,
+    force: ArrayLike | Sequence[ArrayLike] | str | int | None = None,
+    response: ArrayLike | Sequence[ArrayLike] | str | int | None = None,
+    modes: Literal[True],
+    progress: Progress | bool = False,
+    **keywords: Unpack[FrfOptions],
+) -> results.Modes: ...
 
 
 def frf(
@@ -229,15 +273,17 @@ def frf(
     *,
     force: ArrayLike | Sequence[ArrayLike] | str | int | None = None,
     response: ArrayLike | Sequence[ArrayLike] | str | int | None = None,
+    modes: bool = False,
     progress: Progress | bool = False,
     **keywords: Unpack[FrfOptions],
-) -> results.FrequencyResponse:
-    """Frequency response of a machine from impact tests.
+) -> results.FrequencyResponse | results.Modes:
+    """Frequency response of a machine from impact tests, or all modes of it at once.
 
     Args:
-        files: one file or several, each a trial.
+        files: one file or several, each a trial; with ``modes`` also files of measured responses.
         force: force in N, shape (trials, n) or (n,), or the channel of the files.
         response: response in SI units of ``quantity``, of the same shape, or the channel of the files.
+        modes: fit all modes to all lines at once.
         progress: called with a sentence on how far it is, or ``True`` for a line on standard error.
         **keywords: those of :class:`~fmm_friction.options.FrfOptions`; of arrays ``rate`` (Hz) and ``quantity``.
 
@@ -245,9 +291,16 @@ def frf(
         FmmError: a trial or a keyword is refused.
     """
     check("frf", keywords, FrfOptions)
+    band, near = keywords.pop("band", None), keywords.pop("near", None)
+    given = options({**keywords, "modes": modes})
+    if near is not None:
+        given += [f"--near={float(one)!r}" for one in np.atleast_1d(np.asarray(near, dtype=np.float64))]
+    if band is not None:
+        given += ["--band", *(repr(float(end)) for end in band)]
+    result = results.Modes if modes else results.FrequencyResponse
     if files is not None:
-        call = Call(["frf", *options({**keywords, "force": force, "response": response}), "--", *paths(files)])
-        return results.FrequencyResponse(call, call.answer(_told(progress)))
+        call = Call(["frf", *given, *options({"force": force, "response": response}), "--", *paths(files)])
+        return result(call, call.answer(_told(progress)))
     if force is None or response is None or isinstance(force, (str, int)) or isinstance(response, (str, int)):
         raise TypeError("frf() takes files, or arrays of force and response")
     blows, answers = (np.atleast_2d(np.asarray(values, dtype=np.float64)) for values in (force, response))
@@ -257,9 +310,9 @@ def frf(
         table(f"trial {number}", {"force": blow, "response": answer})
         for number, (blow, answer) in enumerate(zip(blows, answers, strict=True), 1)
     ]
-    given = ["--force=force", "--response=response", *options(keywords)]
+    given += ["--force=force", "--response=response"]
     call = Call(["frf", *given, "--", *(name for name, _ in trials)], trials)
-    return results.FrequencyResponse(call, call.answer(_told(progress)))
+    return result(call, call.answer(_told(progress)))
 
 
 def budget(
@@ -318,26 +371,26 @@ def simulate(
 def design(
     plan: Path | Mapping[str, Any] | None = None,
     *,
-    from_: Path | results.Campaign | None = None,
+    from_: Path | results.Identification | results.Campaign | None = None,
     progress: Progress | bool = False,
 ) -> results.Design:
     """Which tests to make next.
 
     Args:
         plan: path of TOML or JSON, or its content: ``machine``, ``guess``, ``sensor``, ``candidates`` and ``choose``.
-        from_: a campaign, or the path of its ``campaign.json``, from which the plan is made.
+        from_: a campaign or an identification, or the path of its document, from which the plan is made.
         progress: called with a sentence on how far it is, or ``True`` for a line on standard error.
 
     Raises:
         FmmError: the plan is refused.
     """
     if (plan is None) == (from_ is None):
-        raise TypeError("design() takes a plan, or a campaign as from_")
+        raise TypeError("design() takes a plan, or a result as from_")
     if plan is not None:
         path, files = document("plan", plan)
         call = Call(["design", "--", path], files)
     else:
-        content = from_.document if isinstance(from_, results.Campaign) else from_
+        content = from_.document if isinstance(from_, (results.Identification, results.Campaign)) else from_
         assert content is not None
         path, files = document("campaign", content)
         call = Call(["design", f"--from={path}"], files)
@@ -381,12 +434,12 @@ def batch(
     files: list[tuple[str, bytes]] = []
     columns: list[str] = []
     if isinstance(records, Mapping):
-        files = [table(name, {"time": t, "y": y}) for name, (t, y) in records.items()]
+        files = _tables(records)
         columns = ["--channel=y", "--time=time"]
         given = list(records)
     else:
         given = [] if records is None else paths(records)
-    if manifest is not None and not _is_path(manifest):
+    if manifest is not None and not is_path(manifest):
         files.append(("manifest.csv", manifest.to_csv(index=False).encode()))  # type: ignore[union-attr]
         manifest = "manifest.csv"
     of_all = options(
@@ -401,7 +454,8 @@ def batch(
         }
     )
     of_all += [f"--against={column}" for column in against]
-    call = Call(["batch", *of_all, *given, "--", *columns, *options(keywords)], files)
+    laws = own(keywords.get("law"))
+    call = Call(["batch", *of_all, *given, "--", *columns, *options(keywords)], files, laws)
     return results.Campaign(call, call.answer(_told(progress)))
 
 

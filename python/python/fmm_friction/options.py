@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
+
+from .law import Laws
 
 Path = str | os.PathLike[str]
 
@@ -53,7 +55,8 @@ class MachineOptions(TypedDict, total=False):
     """Machine, laws and sensor.
 
     Keys:
-        law: laws to compare, such as ``["coulomb", "berger+quadratic"]`` or ``"all"``; without it a search.
+        law: laws to compare, such as ``["coulomb", "berger+quadratic"]`` or ``"all"``, or a
+            :class:`~fmm_friction.Law` of one's own; without it a search.
         hold: parameters to hold at a value, such as ``{"stribeck.exponent": 2}``.
         time_limit: time (s) after which a search begins no further law.
         pendulum: The machine is a pendulum; a number is the length (m) of the arc of one radian.
@@ -72,7 +75,7 @@ class MachineOptions(TypedDict, total=False):
         delay: time (s) by which the sensor is late.
     """
 
-    law: str | list[str] | None
+    law: Laws | None
     hold: Mapping[str, float] | None
     time_limit: float | None
     pendulum: bool | float | None
@@ -99,10 +102,12 @@ class IdentifyOptions(FreeOptions, total=False):
     """Keywords of :func:`identify` and :func:`compare` beside arrays that drive the machine.
 
     Keys:
+        normal_loads: normal load (N) in each of several records, in their order.
         mobility: band (Hz) in which lines of the mobility are fitted in place of the motion after an impact.
         posterior: draw from the posterior of the preferred law; in builds with the feature ``posterior``.
     """
 
+    normal_loads: Sequence[float] | None
     mobility: tuple[float, float] | None
     posterior: bool | None
 
@@ -125,7 +130,7 @@ class ForceOptions(TypedDict, total=False):
         skip: lines to pass over at the top of a text.
         table: number of the table in the file, from 1.
         repair: use a text around its damaged lines.
-        model: models to fit, such as ``["coulomb+linear", "dahl"]``.
+        model: models to fit, such as ``["coulomb+linear", "dahl"]``, or a :class:`~fmm_friction.Law` of one's own.
         hold: parameters to hold at a value.
         longest_delay: longest delay (s) between motion and force that is looked for.
         time_limit: time (s) after which the fits are stopped.
@@ -145,7 +150,7 @@ class ForceOptions(TypedDict, total=False):
     skip: int | None
     table: int | None
     repair: bool | None
-    model: str | list[str] | None
+    model: Laws | None
     hold: Mapping[str, float] | None
     longest_delay: float | None
     time_limit: float | None
@@ -164,6 +169,13 @@ class FrfOptions(TypedDict, total=False):
         repair: use a text around its damaged lines.
         window: ``none``, ``force``, ``exponential``, ``impact``, ``hann`` or ``symmetric-hann``.
         exponential_end: value of an exponential window at the end of the record (1).
+        responses: with ``modes``: The files hold measured responses, although no name of a column says so.
+        averages: with ``modes``: number of averages behind the coherence in a file of responses.
+        band: with ``modes``: lowest and highest frequency (Hz) of the lines that are fitted.
+        order: with ``modes``: highest order of the stabilisation diagram, how many poles the band may hold.
+        near: with ``modes``: frequencies (Hz) to which the poles that are fitted are nearest, in place of all that are
+            stable.
+        save_responses: with ``modes``: Universal File into which the responses that were fitted are written.
     """
 
     quantity: str | None
@@ -175,6 +187,12 @@ class FrfOptions(TypedDict, total=False):
     repair: bool | None
     window: str | None
     exponential_end: float | None
+    responses: bool | None
+    averages: float | None
+    band: tuple[float, float] | None
+    order: int | None
+    near: float | Sequence[float] | None
+    save_responses: Path | None
 
 
 for _part in (RecordOptions, MachineOptions):

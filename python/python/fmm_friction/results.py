@@ -217,6 +217,11 @@ def _numbers(values: list[float | None]) -> NDArray[np.float64]:
     return np.array(values, dtype=np.float64)
 
 
+def _curve(fit: dict[str, Json]) -> Curve:
+    """The samples that a document tells."""
+    return Curve(_numbers(fit["time_s"]), _numbers(fit["measured"]), _numbers(fit["fitted"]), fit["unit"])
+
+
 def _finding(name: str, told: dict[str, Json]) -> Finding:
     """The finding that a document tells."""
     ends = told.get("interval_95")
@@ -272,15 +277,20 @@ class Identification(_Fitted):
         return str(self.document["summary"])
 
     @property
+    def curves(self) -> list[Curve]:
+        """Each record and the preferred fit."""
+        document = self._in_full()
+        return [_curve(fit) for fit in (document["fit"], *document.get("further_fits", []))]
+
+    @property
     def curve(self) -> Curve:
-        """The record and the preferred fit."""
-        fit = self._in_full()["fit"]
-        return Curve(_numbers(fit["time_s"]), _numbers(fit["measured"]), _numbers(fit["fitted"]), fit["unit"])
+        """The first record and the preferred fit."""
+        return self.curves[0]
 
     @property
     def residuals(self) -> NDArray[np.float64]:
-        """Measured less fitted, in the unit of the record."""
-        return _numbers(self._in_full()["fit"]["residuals"])
+        """Measured less fitted of the first record, in its unit."""
+        return self.curve.residuals
 
     @property
     def friction_curve(self) -> dict[str, Json] | None:
@@ -305,11 +315,7 @@ class Force(_Fitted):
     @property
     def curves(self) -> list[Curve]:
         """Each record and the preferred fit."""
-        fits = self._model(full=True)["fits"]
-        return [
-            Curve(_numbers(fit["time_s"]), _numbers(fit["measured"]), _numbers(fit["fitted"]), fit["unit"])
-            for fit in fits
-        ]
+        return [_curve(fit) for fit in self._model(full=True)["fits"]]
 
     @property
     def curve(self) -> Curve:
@@ -368,6 +374,35 @@ class FrequencyResponse(Result):
         return _numbers(self.document["coherence"])
 
 
+class Modes(Result):
+    """Result of :func:`frf` with ``modes``."""
+
+    @property
+    def modes(self) -> list[Findings]:
+        """``natural_frequency_hz`` (Hz) and ``damping_ratio`` (1) of each mode, each with u."""
+        units = {"natural_frequency_hz": "Hz", "damping_ratio": "1"}
+
+        def found(mode: dict[str, Json]) -> Findings:
+            told = {name: mode[name] for name in units}
+            return Findings(
+                {name: Finding(name, one["value"], one["u"], None, units[name]) for name, one in told.items()}
+            )
+
+        return [found(mode) for mode in self.document["modes"]]
+
+    def to_frame(self) -> pd.DataFrame:
+        """A frame of pandas with one row a mode: natural frequency (Hz), damping ratio (1) and each u."""
+        import pandas as pd
+
+        def row(mode: Findings) -> dict[str, float | None]:
+            columns: dict[str, float | None] = {}
+            for name, finding in mode.items():
+                columns[name], columns[f"u_{name}"] = finding.value, finding.u
+            return columns
+
+        return pd.DataFrame([row(mode) for mode in self.modes])
+
+
 class Budget(Result):
     """Result of :func:`budget`."""
 
@@ -380,6 +415,12 @@ class Budget(Result):
     def rows(self) -> list[tuple[dict[str, float], Findings]]:
         """Values of the quantities in each row of a sweep, and its findings."""
         return [(dict(row["values"]), self._findings(row)) for row in self.document.get("sweep", [])]
+
+    @property
+    def conformity(self) -> dict[str, dict[str, Json]]:
+        """Decision on each result with a tolerance: ``accepted``, ``probability`` and the like."""
+        results = self.document["results"]
+        return {one["budget"]["name"]: one["conformity"] for one in results if one.get("conformity")}
 
     @staticmethod
     def _findings(row: dict[str, Json]) -> Findings:
