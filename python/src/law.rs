@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fmm_friction::{LawParameter, OwnLaw, Role, SpeedFormula};
+use fmm_friction::{FamilyVisitor, LawFamily, LawParameter, OwnLaw, Role, SpeedFormula, family_named};
 use fmm_model::{Bounds, Parameter};
 use numpy::{PyArray1, PyArrayLike1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -77,6 +77,17 @@ impl SpeedFormula for Functions {
     }
 }
 
+/// Names of families.
+struct Names;
+
+impl FamilyVisitor for Names {
+    type Output = &'static str;
+
+    fn visit<F: LawFamily>(&mut self) -> &'static str {
+        F::NAME
+    }
+}
+
 /// A law of friction of one's own. It lives as long as the process.
 #[pyclass(frozen)]
 pub(crate) struct Law {
@@ -95,6 +106,9 @@ impl Law {
         coefficient: Py<PyAny>,
         derivatives: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
+        if let Some(taken) = family_named(&name, &mut Names) {
+            return Err(PyValueError::new_err(format!("{taken} is a law of the list; give yours another name")));
+        }
         let raised = Arc::<Mutex<Option<PyErr>>>::default();
         let functions = Functions { coefficient, derivatives, raised: Arc::clone(&raised) };
         let parameters = parameters.into_iter().map(parameter).collect::<PyResult<Vec<_>>>()?;

@@ -105,6 +105,27 @@ def test_laws_are_compared(run):
         compared.findings_of("berger")
 
 
+def test_records_of_one_machine_are_fitted_together(run, program):
+    runs = [np.loadtxt(path, delimiter=",", skiprows=1).T for path in RUNS[:3]]
+    law = {"unit": "m/s", "law": "coulomb_viscous"}
+    loads = {"mass": 10.391, "normal_loads": [14, 14.5, 15], "normal_load_u": 0.07}
+    of_files = fmm.identify(RUNS[:3], law="coulomb_viscous", mass=10.391, normal_loads=[14, 14.5, 15])
+    line = "identify {} {} {} --law coulomb_viscous --mass 10.391 --normal-loads 14,14.5,15 --json"
+    files = [path.relative_to(ROOT) for path in RUNS[:3]]
+    assert of_files.document["models"] == json.loads(program(line.format(*files).split()))["models"]
+    of_pairs = fmm.identify([(t, v) for t, v in runs], **law, mass=10.391, normal_loads=np.array([14, 14.5, 15]))
+    of_names = fmm.identify(
+        dict(zip("abc", ((t, v) for t, v in runs), strict=True)), **law, **loads | {"normal_load_u": None}
+    )
+    assert of_files.document["models"] == of_pairs.document["models"] == of_names.document["models"]
+    assert len(of_pairs.curves) == 3 and len(of_pairs.curves[2].time) == len(of_pairs.curves[2].fitted)
+    compared = fmm.compare([(t, v) for t, v in runs], unit="m/s", law=["viscous", "coulomb"])
+    assert compared.preferred == "coulomb"
+    with pytest.raises(fmm.FmmError, match="one for each record") as refused:
+        fmm.identify([(t, v) for t, v in runs], **law, normal_loads=[14])
+    assert refused.value.code == "contradiction"
+
+
 def test_forces_are_fitted():
     rng = np.random.default_rng(1)
     t = np.arange(0, 10, 1e-2)
@@ -135,6 +156,17 @@ def test_blows_are_averaged():
         fmm.frf(force=[force], response=[response[:-1]], rate=rate)
 
 
+def test_all_modes_are_fitted_at_once(program):
+    chain = "crates/fmm-frf/tests/data/chain_of_six.uff"
+    found = fmm.frf(chain, modes=True, band=(1, 60), order=16)
+    words = ["frf", chain, "--modes", "--band", "1", "60", "--order", "16", "--json"]
+    assert found.to_json() == program(words).rstrip("\n")
+    first = found.modes[0]["natural_frequency_hz"]
+    assert first.unit == "Hz" and first.u is not None and len(found.to_frame()) == len(found.modes)
+    near = fmm.frf(chain, modes=True, near=[first.value])
+    assert len(near.modes) == 1 and near.modes[0]["natural_frequency_hz"].value == pytest.approx(first.value, rel=1e-3)
+
+
 def test_documents_may_be_mappings():
     measurement = {
         "input": [{"name": "a", "unit": "m", "value": 2, "u": 0.1}],
@@ -142,6 +174,8 @@ def test_documents_may_be_mappings():
     }
     y = fmm.budget(measurement, trials=10_000).findings["y"]
     assert y.value == 6 and y.u == pytest.approx(0.3)
+    measurement["result"][0]["tolerance"] = {"upper": 7}
+    assert fmm.budget(measurement, trials=10_000).conformity["y"]["accepted"]
     scenario = {
         "oscillator": {"mass": 1, "stiffness": 100},
         "law": {"coulomb": {"mu": 0.1}},
@@ -169,6 +203,7 @@ def test_a_folder_is_a_campaign(tmp_path):
     jsonschema.validate(campaign.document, json.loads((ROOT / "docs/schemas/batch-1.json").read_text()))
     plan = fmm.design(from_=campaign)
     assert plan.chosen and "design.svg" in plan.figures()
+    assert fmm.design(from_=fmm.identify(RUNS[0], law="coulomb_viscous", **MACHINE)).chosen
 
 
 def test_arrays_and_frames_are_a_campaign():
