@@ -14,7 +14,8 @@ mod _core {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::{Mutex, PoisonError};
 
-    use fmm_cli::{Detail, Host, Refusal};
+    use fmm_cli::{Detail, FittedRecord, Host, Refusal};
+    use numpy::PyArray1;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -71,6 +72,15 @@ mod _core {
 
         fn pictures(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
             py.detach(|| self.0.pictures().map_err(failed)).map_err(|refusal| raised(py, refusal))
+        }
+
+        /// Unit, times, measured and fitted values of each record.
+        fn fits<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, [Bound<'py, PyArray1<f64>>; 3])>> {
+            let fits = py.detach(|| self.0.fits().map_err(failed)).map_err(|refusal| raised(py, refusal))?;
+            let arrays = |fit: FittedRecord| {
+                (fit.unit, [fit.time, fit.measured, fit.fitted].map(|values| PyArray1::from_vec(py, values)))
+            };
+            Ok(fits.into_iter().map(arrays).collect())
         }
 
         fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {

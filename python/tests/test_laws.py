@@ -107,8 +107,9 @@ def test_a_law_that_is_not_on_the_list_is_found_again(of_root):
     found = fmm.compare(*of_root, unit="m/s", mass=2, normal_load=10, law=[law, "coulomb", "coulomb_viscous"])
     assert time.perf_counter() - begun < 60
     assert found.preferred == "root" and found.document["decided"]
-    level, rise = found.findings["mu"], found.findings["rise_mu"]
-    assert abs(level.value - 0.05) < 4 * level.u < 0.02 and abs(rise.value - 0.2) < 4 * rise.u < 0.04
+    level, rise = found.findings["mu"], found.findings["contact_rise"]
+    assert abs(level.value - 0.05) < 4 * level.u < 0.02 and abs(rise.value - 2) < 4 * rise.u < 0.1
+    assert rise.unit == "N s^0.5/m^0.5"
     assert np.std(found.residuals) == pytest.approx(2e-4, rel=0.1)
     again = pickle.loads(pickle.dumps(found))
     assert again.to_json() == found.to_json() and "root" in str(again)
@@ -119,8 +120,8 @@ def test_terms_stand_beside_it():
     own = fmm.identify(RUNS[0], law=law.beside("linear"), **MACHINE)
     listed = fmm.identify(RUNS[0], law="coulomb+linear", **MACHINE)
     assert own.preferred == "level + linear" and near(own, listed)
-    held = fmm.identify(RUNS[0], law=law.beside("linear"), hold={"damping": 0.3}, **MACHINE)
-    assert held.findings["damping"].status == "fixed"
+    held = fmm.identify(RUNS[0], law=law.beside("linear"), hold={"level.damping_per_mass": 0.03}, **MACHINE)
+    assert held.findings["damping_per_mass"].value == 0.03
 
 
 def test_forces_and_campaigns_take_it():

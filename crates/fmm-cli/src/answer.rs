@@ -15,6 +15,29 @@ pub enum Detail {
     Full,
 }
 
+/// A record and the preferred fit, sample by sample.
+///
+/// ```
+/// use fmm_cli::{FittedRecord, Host, answer};
+///
+/// let found = answer(["fmm", "compare", "--law", "coulomb_viscous", "--to", "5"], &Host::default())?;
+/// let fits = found.fits().unwrap();
+/// let [FittedRecord { unit, time, measured, fitted }] = &fits[..] else { panic!("one record") };
+/// assert_eq!((unit.as_str(), time.len(), measured.len()), ("rad/s", fitted.len(), fitted.len()));
+/// # Ok::<(), fmm_cli::Refusal>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedRecord {
+    /// Unit of the values.
+    pub unit: String,
+    /// Times (s).
+    pub time: Vec<f64>,
+    /// Measured values.
+    pub measured: Vec<f64>,
+    /// Values of the model, NaN where it says nothing.
+    pub fitted: Vec<f64>,
+}
+
 /// Findings of a command.
 pub trait Answer: Send + Sync {
     /// Screen of text.
@@ -34,6 +57,14 @@ pub trait Answer: Send + Sync {
     /// # Errors
     /// Reason why they cannot be drawn.
     fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
+        Ok(Vec::new())
+    }
+
+    /// Samples of the records that were fitted and of the preferred fit; none of a command that fits no record.
+    ///
+    /// # Errors
+    /// What keeps the model from being followed.
+    fn fits(&self) -> Result<Vec<FittedRecord>, Box<dyn Error>> {
         Ok(Vec::new())
     }
 

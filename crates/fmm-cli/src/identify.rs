@@ -9,7 +9,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::answer::{Answer, Detail, Document};
+use crate::answer::{Answer, Detail, Document, FittedRecord};
 use crate::figure::{drawn, histogram, label};
 use crate::host::Host;
 use crate::input::{Choice, DRIVE, Given, Question};
@@ -225,6 +225,15 @@ impl Answer for Found {
             ("residuals.svg", histogram(&unit, "residuals", &pictures.residuals)),
         ];
         Ok(pictures.into_iter().chain(curve).map(|(name, svg)| (name.to_owned(), svg)).collect())
+    }
+
+    fn fits(&self) -> Result<Vec<FittedRecord>, Box<dyn Error>> {
+        let fit = |(decay, fitted): (&Experiment, Vec<f64>)| {
+            let record = decay.record();
+            let (unit, time, measured) = (record.unit().to_owned(), record.times().collect(), record.values().to_vec());
+            FittedRecord { unit, time, measured, fitted }
+        };
+        Ok(self.decays.iter().zip(self.fitted()?).map(fit).collect())
     }
 
     fn page(&self) -> Result<Option<String>, Box<dyn Error>> {

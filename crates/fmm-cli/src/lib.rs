@@ -36,7 +36,7 @@ mod scenario;
 mod schemas;
 mod simulate;
 
-pub use answer::{Answer, Detail};
+pub use answer::{Answer, Detail, FittedRecord};
 pub use commands::{answer, run};
 pub use host::Host;
 pub use refusal::Refusal;

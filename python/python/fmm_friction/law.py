@@ -22,8 +22,9 @@ class Parameter:
     """A parameter of a law.
 
     Attributes:
-        name: name, as an identifier. A level called ``coefficient`` is found as ``mu``, ``friction_force`` or
-            ``friction_per_mass``, whatever mass and load allow, and one called ``rising`` as ``rising_mu`` and so on.
+        name: name, as an identifier. A level called ``coefficient`` is found as ``mu``, ``friction_force`` and
+            ``friction_per_mass``, as far as mass and load are known, one called ``rising_coefficient`` as ``rising_mu``
+            and so on, and one called ``rise`` in another unit than 1 as ``contact_rise``; see ``findings``.
         role: ``level``: the friction is proportional to it, as to a coefficient; ``excess``: the same, of a part that
             vanishes with speed; ``slope``: proportional to it and to the speed, like viscous friction; ``shape``: all
             else, such as a speed at which the law bends, or an exponent.

@@ -217,11 +217,6 @@ def _numbers(values: list[float | None]) -> NDArray[np.float64]:
     return np.array(values, dtype=np.float64)
 
 
-def _curve(fit: dict[str, Json]) -> Curve:
-    """The samples that a document tells."""
-    return Curve(_numbers(fit["time_s"]), _numbers(fit["measured"]), _numbers(fit["fitted"]), fit["unit"])
-
-
 def _finding(name: str, told: dict[str, Json]) -> Finding:
     """The finding that a document tells."""
     ends = told.get("interval_95")
@@ -234,17 +229,30 @@ def _finding(name: str, told: dict[str, Json]) -> Finding:
 class _Fitted(Result):
     """A result with a preferred model."""
 
-    _full: dict[str, Json] | None = None
+    _curves: list[Curve] | None = None
 
     @property
     def preferred(self) -> str:
         """Name of the preferred model."""
         return str(self.document["preferred"])
 
-    def _in_full(self) -> dict[str, Json]:
-        if self._full is None:
-            self._full = json.loads(self.to_json(full=True))
-        return self._full
+    @property
+    def curves(self) -> list[Curve]:
+        """Each record and the preferred fit; NaN where the model says nothing."""
+        if self._curves is None:
+            fits = self._answered.fits()
+            self._curves = [Curve(time, measured, fitted, unit) for unit, (time, measured, fitted) in fits]
+        return self._curves
+
+    @property
+    def curve(self) -> Curve:
+        """The first record and the preferred fit."""
+        return self.curves[0]
+
+    @property
+    def residuals(self) -> NDArray[np.float64]:
+        """Measured less fitted of the first record, in its unit; NaN where the model says nothing."""
+        return self.curve.residuals
 
 
 class Identification(_Fitted):
@@ -277,22 +285,6 @@ class Identification(_Fitted):
         return str(self.document["summary"])
 
     @property
-    def curves(self) -> list[Curve]:
-        """Each record and the preferred fit."""
-        document = self._in_full()
-        return [_curve(fit) for fit in (document["fit"], *document.get("further_fits", []))]
-
-    @property
-    def curve(self) -> Curve:
-        """The first record and the preferred fit."""
-        return self.curves[0]
-
-    @property
-    def residuals(self) -> NDArray[np.float64]:
-        """Measured less fitted of the first record, in its unit."""
-        return self.curve.residuals
-
-    @property
     def friction_curve(self) -> dict[str, Json] | None:
         """Friction over the speed, no law assumed: ``speeds``, ``levels``, units and what speaks against it."""
         curve: dict[str, Json] | None = self.document.get("friction_curve")
@@ -302,30 +294,11 @@ class Identification(_Fitted):
 class Force(_Fitted):
     """Result of :func:`force`."""
 
-    def _model(self, full: bool = False) -> dict[str, Json]:
-        document = self._in_full() if full else self.document
-        model: dict[str, Json] = next(one for one in document["models"] if one["model"] == self.preferred)
-        return model
-
     @property
     def findings(self) -> Findings:
         """Findings of the preferred model by name."""
-        return Findings({told["name"]: _finding(told["name"], told) for told in self._model()["findings"]})
-
-    @property
-    def curves(self) -> list[Curve]:
-        """Each record and the preferred fit."""
-        return [_curve(fit) for fit in self._model(full=True)["fits"]]
-
-    @property
-    def curve(self) -> Curve:
-        """The first record and the preferred fit."""
-        return self.curves[0]
-
-    @property
-    def residuals(self) -> NDArray[np.float64]:
-        """Measured less fitted of the first record; NaN where the model says nothing."""
-        return self.curve.residuals
+        model = next(one for one in self.document["models"] if one["model"] == self.preferred)
+        return Findings({told["name"]: _finding(told["name"], told) for told in model["findings"]})
 
 
 class Backbone(Result):

@@ -13,7 +13,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::answer::{Answer, Detail, Document};
+use crate::answer::{Answer, Detail, Document, FittedRecord};
 use crate::figure::{Panel, Role, drawn, ends, label};
 use crate::files::named;
 use crate::host::Host;
@@ -169,6 +169,19 @@ impl Answer for Found {
 
     fn document(&self, detail: Detail) -> Result<String, Box<dyn Error>> {
         Document::new("force-1", Content::of(self, detail)?).pretty()
+    }
+
+    fn fits(&self) -> Result<Vec<FittedRecord>, Box<dyn Error>> {
+        let fit = |Read { record, .. }: &Read| {
+            let fitted = self.compared.preferred().predict(record)?;
+            Ok(FittedRecord {
+                unit: record.force_unit().to_owned(),
+                time: record.times().to_vec(),
+                measured: record.forces().to_vec(),
+                fitted: fitted.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
+            })
+        };
+        self.fitted.iter().map(fit).collect()
     }
 
     fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
