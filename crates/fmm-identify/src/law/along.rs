@@ -196,11 +196,7 @@ impl Segment {
 }
 
 /// Friction of a `law` of the sliding speed.
-pub(crate) fn along_sliding<D: Scalar>(
-    law: &dyn SlidingLaw<D>,
-    alignment: Alignment<'_, D>,
-    friction: &mut Vec<D>,
-) -> Result<(), EvaluationError> {
+pub(crate) fn along_sliding<D: Scalar>(law: &dyn SlidingLaw<D>, alignment: Alignment<'_, D>, friction: &mut Vec<D>) {
     friction.clear();
     let leaps = law.coefficient(D::from(0.0)).value() > 0.0;
     for (row, location) in (alignment.first..).zip(alignment.locations) {
@@ -216,7 +212,6 @@ pub(crate) fn along_sliding<D: Scalar>(
         let size = if losing { law.coefficient_losing_speed(speed) } else { law.coefficient(speed) };
         friction.push(if velocity.value() < 0.0 { -size } else { size });
     }
-    Ok(())
 }
 
 struct Following<'a, 'g, D, L> {
@@ -233,7 +228,8 @@ impl<D: Scalar, L> LawVisitor<D, L> for Following<'_, '_, D, L> {
         L: SlidingLaw<D>,
     {
         let Self { law, alignment, friction } = self;
-        along_sliding(law, alignment, friction)
+        along_sliding(law, alignment, friction);
+        Ok(())
     }
 
     fn bristle(self) -> Self::Output

@@ -148,7 +148,8 @@ impl Members for OwnLaw {
     }
 
     fn along(&self, values: &[f64], alignment: Alignment<'_, f64>, friction: &mut Vec<f64>) -> Done {
-        along_sliding(&self.at(values)?, alignment, friction)
+        along_sliding(&self.at(values)?, alignment, friction);
+        Ok(())
     }
 
     fn along_with_derivatives(
@@ -157,7 +158,8 @@ impl Members for OwnLaw {
         alignment: Alignment<'_, Dual<DIRECTIONS>>,
         friction: &mut Vec<Dual<DIRECTIONS>>,
     ) -> Done {
-        along_sliding(&self.at(values)?, alignment, friction)
+        along_sliding(&self.at(values)?, alignment, friction);
+        Ok(())
     }
 
     fn steady(&self, values: &[f64], speed: f64, _losing: bool) -> Option<f64> {

@@ -50,12 +50,15 @@ pub struct Problem<'a> {
     /// Relative tolerance (1) of simulations that integrate, if not the engine's own.
     tolerance: Option<f64>,
     /// Simulation without derivatives in place of that of the law.
-    euler: Option<fn(&Motion<f64>, &Sampling, &mut Trajectory) -> Result<(), EvaluationError>>,
+    euler: Option<Euler>,
     /// Values with which a fit begins, where they are declared.
     declared: Vec<f64>,
     /// Forces along motions in place of the experiments.
     forces: Option<Forces<'a>>,
 }
+
+/// A simulation without derivatives.
+type Euler = fn(&Motion<f64>, &Sampling, &mut Trajectory) -> Result<(), EvaluationError>;
 
 /// Samples simulated at a time: memory beyond the solver's own stays below 4 MB however long the record.
 const WINDOW: usize = 1 << 16;

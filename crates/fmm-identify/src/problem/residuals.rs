@@ -132,14 +132,10 @@ impl Problem<'_> {
     /// Fills one part with what each used sample shows.
     fn fill_samples(&self, p: &[f64], part: Part<'_>) -> Result<(), EvaluationError> {
         let members = self.law().members;
-        match part.directions.len() {
-            0..=FEW => self.fill_by::<FEW>(&|motion, sampling, out| members.few(motion, sampling, out), p, part),
-            _ => {
-                let simulate: Simulate<'_, _> =
-                    &|motion, sampling, out| members.with_derivatives(motion, sampling, out);
-                self.fill_by::<DIRECTIONS>(simulate, p, part)
-            }
-        }
+        let few: Simulate<'_, Dual<FEW>> = &|motion, sampling, out| members.few(motion, sampling, out);
+        let more: Simulate<'_, Dual<DIRECTIONS>> =
+            &|motion, sampling, out| members.with_derivatives(motion, sampling, out);
+        if part.directions.len() <= FEW { self.fill_by(few, p, part) } else { self.fill_by(more, p, part) }
     }
 
     fn fill_by<const N: usize>(
