@@ -229,13 +229,13 @@ impl Choice {
     ) -> Result<Input, Box<dyn Error>> {
         let meaning = self.request().meaning(label).map_err(|error| self.with_remedy(error))?;
         if !is_motion(meaning.quantity) && !self.is_drive {
-            return Err(Kind::Channel.refusal(format!(
+            let what = format!(
                 "channel \"{}\" is a record of {}, and friction is fitted to a velocity, a displacement or an \
                  acceleration: give one of these by --channel",
                 label.name(),
                 meaning.quantity
-            ))
-            .into());
+            );
+            return Err(Kind::Channel.refusal(what).into());
         }
         let (file, channel) = (files::name(path), label.name());
         let spacing = spacing(&reading.record);
