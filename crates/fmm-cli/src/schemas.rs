@@ -24,6 +24,7 @@ fn schemas() -> [(String, String); 13] {
         schema::<force::Content<'_>>("force-1"),
         schema::<backbone::Content<'_>>("backbone-1"),
         schema::<frf::Content<'_>>("frf-1"),
+        #[cfg(feature = "modes")]
         schema::<frf::modes::Content<'_>>("modes-1"),
         schema::<budget::Answers>("budget-1"),
         schema::<scenario::Motion>("simulate-1"),

@@ -6,6 +6,7 @@
 
 mod analysis;
 mod figures;
+#[cfg(feature = "modes")]
 pub(crate) mod modes;
 #[cfg(test)]
 mod tests;
@@ -40,6 +41,7 @@ pub(crate) struct Arguments {
     /// Value of an exponential window at the end of the record
     #[arg(long, value_name = "FRACTION", default_value_t = 0.01)]
     exponential_end: f64,
+    #[cfg(feature = "modes")]
     #[command(flatten)]
     modes: modes::Choices,
     #[command(flatten)]
@@ -218,16 +220,15 @@ pub(crate) struct Found {
 }
 
 pub(crate) fn frf(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn Answer>, Box<dyn Error>> {
-    if !arguments.modes.are_wanted() {
-        return Ok(Box::new(found(arguments, host)?));
+    #[cfg(feature = "modes")]
+    if arguments.modes.are_wanted() {
+        let measured = match arguments.modes.measured(&arguments.files, &arguments.channels, host)? {
+            Some(measured) => measured,
+            None => modes::Measured::of(&found(arguments, host)?)?,
+        };
+        return Ok(Box::new(arguments.modes.fit(measured, host)?));
     }
-    let (files, choice) = (&arguments.files, &arguments.channels);
-    let measured = arguments.modes.measured(files, choice, host)?;
-    let measured = match measured {
-        Some(measured) => measured,
-        None => modes::Measured::of(&found(arguments, host)?)?,
-    };
-    Ok(Box::new(arguments.modes.fit(measured, host)?))
+    Ok(Box::new(found(arguments, host)?))
 }
 
 fn found(arguments: &Arguments, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {

@@ -58,8 +58,7 @@ impl Warning {
             Self::Interrupted { time, ratio } => write!(
                 f,
                 "something else than the machine takes its motion after {time:.3} s: the next half swing loses \
-                 {ratio:.0} times as much as those before it; only the part before was used; give --to to say \
-                 otherwise"
+                 {ratio:.0} times as much as those before it; only the part before was used; --to says otherwise"
             ),
             Self::SecondMode { frequency, share } => write!(
                 f,
@@ -78,12 +77,10 @@ impl Warning {
                 "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise; what follows \
                  the last turning point was left out, as what swings within a step is rounded to another motion"
             ),
-            Self::Drift => {
-                write!(
-                    f,
-                    "the zero of the instrument drifts slowly; a polynomial of degree 3 was fitted beside the motion"
-                )
-            }
+            Self::Drift => write!(
+                f,
+                "the zero of the instrument drifts slowly; a polynomial of degree 3 was fitted beside the motion"
+            ),
             Self::KnowledgeContradicted { parameter, distance } => write!(
                 f,
                 "the records move {parameter} by {distance:.1} standard uncertainties from the value that was given: \
