@@ -18,8 +18,8 @@ fn schema<T: JsonSchema>(name: &str) -> (String, String) {
     (name.to_owned(), format!("{schema:#}\n"))
 }
 
-fn schemas() -> [(String, String); 13] {
-    [
+fn schemas() -> Vec<(String, String)> {
+    vec![
         schema::<identify::Content<'_>>("identify-1"),
         schema::<force::Content<'_>>("force-1"),
         schema::<backbone::Content<'_>>("backbone-1"),
