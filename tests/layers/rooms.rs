@@ -16,7 +16,7 @@ const ROOMS: &[(&str, &str)] = &[
         "error algebra problem solver result diagnostics fitting uncertainty robust regression comparison \
          design posterior",
     ),
-    ("fmm-frf", "error channel impulse response average friction decay modal modes"),
+    ("fmm-frf", "error channel impulse response average friction decay modal modes serialised"),
     ("fmm-friction", "law laws catalogue"),
     (
         "fmm-identify",

@@ -90,8 +90,8 @@ mod tests;
 pub use catalogue::{catalogue, family_named};
 pub use law::{
     Affine, BristleLaw, Element, Expansion, FamilyMember, FamilyVisitor, FeedForward, LawError, LawFamily, LawKind,
-    LawParameter, LawVisitor, OwnLaw, OwnMember, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole,
-    SearchStage, SearchTrial, SlidingLaw, SpecialCase, SpeedFormula,
+    LawParameter, LawVisitor, OwnLaw, PiecewiseLinearLaw, Regime, Reparametrisation, Role, SearchRole, SearchStage,
+    SearchTrial, SlidingLaw, SpecialCase, SpeedFormula,
 };
 pub use laws::{
     AccelerationCoulomb, Berger, BoucWen, BoucWenByLevel, Coulomb, CoulombStatic, CoulombViscous, Dahl,

@@ -18,7 +18,7 @@ pub use expansion::Expansion;
 pub use family::{FamilyMember, FamilyVisitor, LawFamily, Reparametrisation, SpecialCase};
 pub use feed_forward::FeedForward;
 pub use kind::{LawKind, LawVisitor};
-pub use own::{OwnLaw, OwnMember, SpeedFormula};
+pub use own::{OwnLaw, SpeedFormula};
 pub use parameter::{LawParameter, Role};
 pub use search::{SearchRole, SearchStage, SearchTrial};
 

@@ -110,7 +110,7 @@ impl OwnLaw {
     ///
     /// # Errors
     /// [`LawError::WrongCount`] and [`LawError::OutOfBounds`].
-    pub fn at<D: Scalar>(&self, values: &[D]) -> Result<OwnMember<'_, D>, LawError> {
+    pub fn at<D: Scalar>(&self, values: &[D]) -> Result<impl SlidingLaw<D> + Clone + Debug, LawError> {
         all_checked(&self.name, &self.parameters, values)?;
         Ok(OwnMember { law: self, values: values.to_vec() })
     }
@@ -151,7 +151,7 @@ impl OwnLaw {
 
 /// An [`OwnLaw`] with values of its parameters.
 #[derive(Debug, Clone)]
-pub struct OwnMember<'a, D = f64> {
+struct OwnMember<'a, D = f64> {
     law: &'a OwnLaw,
     values: Vec<D>,
 }
