@@ -8,7 +8,6 @@ use fmm_record::Complex64;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::error::FrfError;
 use crate::response::{FrequencyResponse, ResponseForm, SingleDegreeOfFreedom};
 
 /// Fields of a response as they are written.
@@ -48,7 +47,7 @@ impl<'de> Deserialize<'de> for FrequencyResponse {
 /// Coefficients of an oscillator as they are written.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Oscillator {
+struct Oscillator {
     /// m (kg).
     mass: f64,
     /// c (N s/m).
@@ -57,24 +56,18 @@ pub(crate) struct Oscillator {
     stiffness: f64,
 }
 
-impl From<SingleDegreeOfFreedom> for Oscillator {
-    fn from(machine: SingleDegreeOfFreedom) -> Self {
-        Self { mass: machine.mass(), damping: machine.damping(), stiffness: machine.stiffness() }
+impl Serialize for SingleDegreeOfFreedom {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (mass, damping, stiffness) = (self.mass(), self.damping(), self.stiffness());
+        Oscillator { mass, damping, stiffness }.serialize(serializer)
     }
 }
 
-impl TryFrom<Oscillator> for SingleDegreeOfFreedom {
-    type Error = FrfError;
-
-    fn try_from(written: Oscillator) -> Result<Self, FrfError> {
-        Self::new(written.mass, written.damping, written.stiffness)
+impl<'de> Deserialize<'de> for SingleDegreeOfFreedom {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Oscillator { mass, damping, stiffness } = Oscillator::deserialize(deserializer)?;
+        Self::new(mass, damping, stiffness).map_err(D::Error::custom)
     }
-}
-
-/// A complex number as the pair of its parts.
-#[cfg(feature = "modes")]
-pub(crate) fn pair<S: Serializer>(value: &Complex64, serializer: S) -> Result<S::Ok, S::Error> {
-    [value.re, value.im].serialize(serializer)
 }
 
 #[cfg(test)]

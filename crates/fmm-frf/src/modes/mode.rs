@@ -34,7 +34,7 @@ pub struct Mode {
 #[non_exhaustive]
 pub struct Residue {
     /// A, of the receptance whatever the form of the response (m/(N s)).
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialised::pair"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::modes::pole::pair"))]
     pub value: Complex64,
     /// Standard uncertainty of its real part (m/(N s)).
     pub real_uncertainty: f64,

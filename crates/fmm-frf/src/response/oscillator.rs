@@ -30,11 +30,6 @@ use crate::response::{FrequencyResponse, ResponseForm};
 /// # Ok::<(), fmm_frf::FrfError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(try_from = "crate::serialised::Oscillator", into = "crate::serialised::Oscillator")
-)]
 pub struct SingleDegreeOfFreedom {
     mass: f64,
     damping: f64,
