@@ -19,7 +19,8 @@ use crate::machine::Scale;
 use crate::machine::term::Term;
 use crate::machine::{Known, Machine};
 use crate::problem::Problem;
-use crate::quantities::table::{Knowledge, Place, Row, Table, mass_of_stiffness};
+use crate::quantities::rows::{Knowledge, Place, Row};
+use crate::quantities::table::{Table, mass_of_stiffness};
 
 /// Layout and parameters that all tests share, static levels among them.
 pub(crate) fn layout(

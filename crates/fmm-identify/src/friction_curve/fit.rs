@@ -18,7 +18,7 @@ use crate::friction_curve::mixture::{Posterior, Prior};
 use crate::friction_curve::rules::{MOST_SAMPLES, MOST_STEPS, SAMPLES_PER_PERIOD, SETTLED};
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
-use crate::quantities::table::Place;
+use crate::quantities::rows::Place;
 use crate::residuals::noise::ResidualNoise;
 use crate::residuals::rules::{CORRELATION_TIME, EXCESS};
 use crate::threads::is_past;

@@ -7,7 +7,7 @@ use crate::judgement::rules::LEAST_CHANGE;
 use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::tangent::Tangent;
-use crate::quantities::table::Place;
+use crate::quantities::rows::Place;
 
 /// Size w of a term beside a law that leaves it out, by one step of least squares from the fit without it:
 ///

@@ -17,7 +17,7 @@ use crate::machine::Terms;
 use crate::machine::term::Term;
 use crate::problem::Problem;
 use crate::problem::tangent::Tangent;
-use crate::quantities::table::Place;
+use crate::quantities::rows::Place;
 use crate::residuals::rules::{SIGNIFICANT, SIGNIFICANT_FALL, SIGNIFICANT_PRESLIDING};
 use crate::warning::Warning;
 

@@ -14,7 +14,8 @@ use crate::experiment::Experiment;
 use crate::law::Motion;
 use crate::law::naming::Form;
 use crate::machine::{Known, Machine};
-use crate::quantities::table::{Place, Table};
+use crate::quantities::rows::Place;
+use crate::quantities::table::Table;
 
 impl Problem<'static> {
     /// The residuals of a `record`, a velocity (m/s) or a displacement (m), as a function of the whole machine: each

@@ -14,7 +14,8 @@ use crate::law::along::{Alignment, SampleLocation, locations};
 use crate::law::{DIRECTIONS, Law};
 use crate::machine::Machine;
 use crate::machine::term::Term;
-use crate::quantities::table::{Place, Table};
+use crate::quantities::rows::Place;
+use crate::quantities::table::Table;
 use crate::threads::Pool;
 
 /// Forces along motions of one problem.

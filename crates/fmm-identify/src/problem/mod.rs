@@ -17,7 +17,8 @@ use crate::machine::term::Term;
 use crate::machine::{Machine, Scale, Terms};
 use crate::problem::force::Forces;
 use crate::quantities::prior::Prior;
-use crate::quantities::table::{Place, Table};
+use crate::quantities::rows::Place;
+use crate::quantities::table::Table;
 
 mod declared;
 pub(crate) mod force;

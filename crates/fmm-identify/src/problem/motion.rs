@@ -9,7 +9,8 @@ use crate::law::Motion;
 use crate::law::naming::Form;
 use crate::machine::term::Term;
 use crate::machine::{Machine, Scale};
-use crate::quantities::table::{Place, Table, mass_of_stiffness};
+use crate::quantities::rows::Place;
+use crate::quantities::table::{Table, mass_of_stiffness};
 
 impl Table {
     /// The mass (kg) by the shared `values`, where the `machine` or the motion tells it.

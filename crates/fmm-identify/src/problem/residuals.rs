@@ -7,7 +7,7 @@ use fmm_model::{Dual, Parameter};
 
 use super::Problem;
 use crate::law::{DIRECTIONS, FEW, Simulate};
-use crate::quantities::table::Place;
+use crate::quantities::rows::Place;
 use crate::threads::on_all_threads;
 
 /// Columns that one simulation with derivatives fills: those of a few parameters of one record, and with the first of

@@ -15,7 +15,8 @@ use crate::experiment::run_down::{are_run_downs, slope};
 use crate::law::Law;
 use crate::law::dimension::{Scales, is_coefficient, is_force};
 use crate::machine::term::Term;
-use crate::quantities::table::{Knowledge, Place, Row, mass_of_stiffness};
+use crate::quantities::rows::{Knowledge, Place, Row};
+use crate::quantities::table::mass_of_stiffness;
 
 /// Start value of the excess of a static level, as a share of the sliding one (1).
 const FIRST_STATIC_EXCESS: f64 = 0.2;

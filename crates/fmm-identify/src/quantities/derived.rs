@@ -11,7 +11,8 @@ use crate::law::dimension::{is_coefficient, is_force};
 use crate::law::naming::{Form, Units};
 use crate::machine::term::{CHANGE_PER_HALF_CYCLE, RISE_OVER_POSITION, Term};
 use crate::machine::{Machine, Scale};
-use crate::quantities::table::{Place, Table, mass_of_stiffness};
+use crate::quantities::rows::Place;
+use crate::quantities::table::{Table, mass_of_stiffness};
 
 /// Shared values of one fit and what is known from elsewhere, from which the derived quantities follow.
 pub(crate) struct Inputs<'a> {

@@ -9,7 +9,8 @@ use crate::experiment::force::ForceRecord;
 use crate::law::naming::{Form, Units};
 use crate::machine::Terms;
 use crate::machine::term::Term;
-use crate::quantities::table::{Builder, Knowledge, Place, Table};
+use crate::quantities::rows::{Builder, Knowledge, Place};
+use crate::quantities::table::Table;
 
 /// Samples of delay that are looked for unless a longest delay is given.
 const SAMPLES_OF_DELAY: f64 = 20.0;

@@ -3,4 +3,5 @@
 pub(crate) mod derived;
 pub(crate) mod force;
 pub(crate) mod prior;
+pub(crate) mod rows;
 pub(crate) mod table;

@@ -1,7 +1,7 @@
 //! Prior knowledge of quantities, as further residuals of a fit.
 
 use crate::finding::Source;
-use crate::quantities::table::{Knowledge, Row};
+use crate::quantities::rows::{Knowledge, Row};
 
 /// Quantities that are known before the records are looked at, with their covariance V.
 ///
@@ -109,7 +109,7 @@ fn whitening(covariance: &[f64], count: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantities::table::Place;
+    use crate::quantities::rows::Place;
 
     fn known(value: f64, uncertainty: f64) -> Row {
         let knowledge = Knowledge::Prior { value, uncertainty, source: Source::Mass };
