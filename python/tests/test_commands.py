@@ -113,7 +113,7 @@ def test_records_of_one_machine_are_fitted_together(run, program):
     line = "identify {} {} {} --law coulomb_viscous --mass 10.391 --normal-loads 14,14.5,15 --json"
     files = [path.relative_to(ROOT) for path in RUNS[:3]]
     assert of_files.document["models"] == json.loads(program(line.format(*files).split()))["models"]
-    of_pairs = fmm.identify([(t, v) for t, v in runs], **law, mass=10.391, normal_loads=np.array([14, 14.5, 15]))
+    of_pairs = fmm.identify([[t, v] for t, v in runs], **law, mass=10.391, normal_loads=np.array([14, 14.5, 15]))
     of_names = fmm.identify(
         dict(zip("abc", ((t, v) for t, v in runs), strict=True)), **law, **loads | {"normal_load_u": None}
     )

@@ -51,10 +51,12 @@ def test_the_examples_run(tmp_path, monkeypatch):
         "f": force,
         "n": np.full(len(clock), 10.0),
     }
-    names = {"t": t, "v": v, "plt": MagicMock(), "pandas": pandas}
+    names = {"t": t, "v": v, "plt": MagicMock(), "pandas": pandas, "np": np, "speeds": np.linspace(0, 0.2)}
     for block in BLOCKS:
         if "position=x" in block:
             names.update(t=clock, v=speed)
+        if "fmm.Law" in block:
+            names.update(t=t, v=v)
         if "read_csv" not in block:
             names.update(of_blocks)
         exec(block, names)

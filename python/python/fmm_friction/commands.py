@@ -41,12 +41,10 @@ def _tables(records: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> list[tuple[st
 
 def _are_pairs(given: object) -> bool:
     """True for pairs of arrays, such as times and values of several records."""
-    is_pair = [isinstance(one, tuple) and len(one) == 2 and np.ndim(one[0]) > 0 for one in _listed(given)]
+    if not isinstance(given, (list, tuple)):
+        return False
+    is_pair = [isinstance(one, (list, tuple)) and len(one) == 2 and np.ndim(one[0]) == 1 for one in given]
     return bool(is_pair) and all(is_pair)
-
-
-def _listed(given: object) -> Sequence[object]:
-    return given if isinstance(given, (list, tuple)) else ()
 
 
 def _record(
