@@ -4,10 +4,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use fmm_friction::{FamilyVisitor, LawFamily, LawParameter, OwnLaw, Role, SpeedFormula, family_named};
 use fmm_model::{Bounds, Parameter};
-use numpy::{PyArray1, PyArrayLike1, PyArrayMethods};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyFloat, PyFloatMethods, PyTuple};
 
 /// Formula of a law, and its derivatives if they are known.
 #[derive(Debug)]
@@ -30,11 +30,16 @@ impl Functions {
 
     /// Numbers of an array, of one number for each of `points`, or of one for all.
     fn numbers(found: &Bound<'_, PyAny>, points: usize, what: &str) -> PyResult<Vec<f64>> {
-        if let Ok(number) = found.extract::<f64>() {
-            return Ok(vec![number; points]);
-        }
-        let array: PyArrayLike1<'_, f64, numpy::AllowTypeChange> = found.extract()?;
-        let numbers = array.to_vec()?;
+        // An array of one number is no number to NumPy.
+        let numbers: Vec<f64> = if let Ok(array) = found.cast::<PyArray1<f64>>() {
+            array.readonly().as_array().iter().copied().collect()
+        } else if let Ok(number) = found.cast::<PyFloat>() {
+            return Ok(vec![number.value(); points]);
+        } else if let Ok(array) = found.extract::<PyArrayLike1<'_, f64, AllowTypeChange>>() {
+            array.as_array().iter().copied().collect()
+        } else {
+            return Ok(vec![found.extract()?; points]);
+        };
         if numbers.len() == points {
             return Ok(numbers);
         }

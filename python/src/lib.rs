@@ -55,6 +55,9 @@ mod _core {
         }
     }
 
+    /// Unit, times, measured and fitted values.
+    type Fit<'py> = (String, [Bound<'py, PyArray1<f64>>; 3]);
+
     /// What a command found.
     #[pyclass(frozen)]
     struct Answer(Box<dyn fmm_cli::Answer>);
@@ -74,8 +77,8 @@ mod _core {
             py.detach(|| self.0.pictures().map_err(failed)).map_err(|refusal| raised(py, refusal))
         }
 
-        /// Unit, times, measured and fitted values of each record.
-        fn fits<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, [Bound<'py, PyArray1<f64>>; 3])>> {
+        /// Samples of each record and of the preferred fit.
+        fn fits<'py>(&self, py: Python<'py>) -> PyResult<Vec<Fit<'py>>> {
             let fits = py.detach(|| self.0.fits().map_err(failed)).map_err(|refusal| raised(py, refusal))?;
             let arrays = |fit: FittedRecord| {
                 (fit.unit, [fit.time, fit.measured, fit.fitted].map(|values| PyArray1::from_vec(py, values)))

@@ -115,6 +115,23 @@ def test_a_law_that_is_not_on_the_list_is_found_again(of_root):
     assert again.to_json() == found.to_json() and "root" in str(again)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda v, coefficient: coefficient,
+        lambda v, coefficient: np.broadcast_to(coefficient, v.shape),
+        lambda v, coefficient: list(coefficient),
+        lambda v, coefficient: np.float64(coefficient[0]) if len(v) == 1 else coefficient,
+        lambda v, coefficient: np.stack([v, coefficient]).T[:, 1],
+    ],
+)
+def test_arrays_of_any_kind_are_taken(function):
+    law = fmm.Law("level", function, STRAIGHT[:1])
+    own = fmm.compare(RUNS[0], law=law, to=1.0)
+    assert near(own, fmm.compare(RUNS[0], law="coulomb", to=1.0))
+
+
 def test_terms_stand_beside_it():
     law = fmm.Law("level", lambda v, coefficient: coefficient, STRAIGHT[:1])
     own = fmm.identify(RUNS[0], law=law.beside("linear"), **MACHINE)
