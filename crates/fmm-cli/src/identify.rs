@@ -254,11 +254,16 @@ pub(crate) fn identify(arguments: &Arguments, command: &str, host: &Host<'_>) ->
     let begun = Instant::now();
     let mut found = found(arguments, &arguments.question.candidates(host)?, command, host)?;
     let curve = || {
-        if arguments.question.is_over(begun) {
-            return Curve::Missing { missing: "the time limit is over".to_owned() };
-        }
-        match FrictionCurve::beside(found.comparison.preferred(), &found.decays) {
+        let (preferred, left) = (found.comparison.preferred(), || arguments.question.time_left(begun));
+        let curve = match left() {
+            Some(limit) => FrictionCurve::beside_within(preferred, &found.decays, limit),
+            None => FrictionCurve::beside(preferred, &found.decays),
+        };
+        match curve {
             Ok(curve) => Curve::Found(Box::new(curve)),
+            Err(_) if left().is_some_and(|left| left.is_zero()) => {
+                Curve::Missing { missing: "the time limit is over".to_owned() }
+            }
             Err(error) => Curve::Missing { missing: error.to_string() },
         }
     };

@@ -190,9 +190,10 @@ impl Question {
         self.candidates(host)
     }
 
-    /// True if the time limit of a search that has `begun` then is over.
-    pub(crate) fn is_over(&self, begun: Instant) -> bool {
-        self.time_limit.is_some_and(|limit| begun.elapsed().as_secs_f64() >= limit)
+    /// What is left of the time limit of a search that has `begun` then; `None` without a limit.
+    pub(crate) fn time_left(&self, begun: Instant) -> Option<Duration> {
+        let left = self.time_limit? - begun.elapsed().as_secs_f64();
+        Some(Duration::try_from_secs_f64(left.max(0.0)).unwrap_or(Duration::MAX))
     }
 
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {

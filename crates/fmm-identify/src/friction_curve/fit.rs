@@ -94,12 +94,17 @@ impl<'a> Levelled<'a> {
 }
 
 impl CurveFit {
-    /// The curve that `experiments` on `machine` share, with these terms beside it.
-    pub(super) fn of(machine: &Machine, beside: &Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments, None)?;
+    /// The curve that `experiments` on `machine` share, with these terms beside it, found until the `end`.
+    pub(super) fn of(
+        machine: &Machine,
+        beside: &Terms,
+        experiments: &[Experiment],
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
+        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments, end)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            let few = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS, None)?;
+            let few = Settled::of(&problem.with_records(&thinned), values, scale, MOST_STEPS, end)?;
             // What does not settle with few samples does not with all of them.
             if !few.has_ended {
                 return Err(not_settled());
@@ -107,7 +112,7 @@ impl CurveFit {
             values = few.values;
         }
         let Settled { values, near, likelihood, posterior, has_ended } =
-            Settled::of(problem, values, scale, MOST_STEPS, None)?;
+            Settled::of(problem, values, scale, MOST_STEPS, end)?;
         // The intervals hold near the curve about which the record was linearised, and nowhere else.
         if !has_ended {
             return Err(not_settled());

@@ -9,6 +9,8 @@ pub(crate) mod projection;
 mod report;
 mod rules;
 
+use std::time::{Duration, Instant};
+
 use fmm_model::Unit;
 
 pub use level::FrictionLevel;
@@ -105,7 +107,7 @@ impl FrictionCurve {
     /// vibration, [`IdentifyError::Contradiction`] for different loads, [`IdentifyError::NotSeen`] where the fit does
     /// not end, and those of a fit that cannot begin.
     pub fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_terms(machine, Terms::NONE, experiments)
+        Self::with_terms(machine, Terms::NONE, experiments, None)
     }
 
     /// The curve of the machine and the records of `found`, with the terms of its spring, its change of the friction
@@ -115,10 +117,37 @@ impl FrictionCurve {
     /// # Errors
     /// As for [`of`](Self::of), and [`IdentifyError::Contradiction`] for other `experiments` than those of `found`.
     pub fn beside(found: &Identification, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_terms(found.machine(), found.fitted.model.terms.beside_friction(), &found.experiments(experiments)?)
+        Self::with_terms(
+            found.machine(),
+            found.fitted.model.terms.beside_friction(),
+            &found.experiments(experiments)?,
+            None,
+        )
     }
 
-    fn with_terms(machine: &Machine, terms: Terms, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
+    /// The same, given up where it takes longer than `limit`.
+    ///
+    /// # Errors
+    /// As for [`beside`](Self::beside), and [`IdentifyError::Fit`] or [`IdentifyError::NotSeen`] at the limit.
+    pub fn beside_within(
+        found: &Identification,
+        experiments: &[Experiment],
+        limit: Duration,
+    ) -> Result<Self, IdentifyError> {
+        Self::with_terms(
+            found.machine(),
+            found.fitted.model.terms.beside_friction(),
+            &found.experiments(experiments)?,
+            Instant::now().checked_add(limit),
+        )
+    }
+
+    fn with_terms(
+        machine: &Machine,
+        terms: Terms,
+        experiments: &[Experiment],
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
         let reference = experiments.first().ok_or(IdentifyError::no_record())?;
         if experiments.iter().any(|experiment| experiment.drive().is_some() || experiment.lines().is_some()) {
             let what =
@@ -138,7 +167,7 @@ impl FrictionCurve {
         // The levels near rest decide about the rest by leaps, and nothing is lost before it.
         let moving = |one: &Experiment| one.before_rest().unwrap_or_else(|| one.clone());
         let moving: Vec<Experiment> = experiments.iter().map(moving).collect();
-        let fit = CurveFit::of(machine, &terms, &moving)?;
+        let fit = CurveFit::of(machine, &terms, &moving, end)?;
         let units = Units::of(reference.record());
         let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
         let clock = Clock::of(experiments);

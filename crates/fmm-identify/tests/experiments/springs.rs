@@ -1,5 +1,7 @@
 //! Springs that harden or soften, and cubic damping, fitted beside the law.
 
+use std::time::Duration;
+
 use fmm_friction::{Coulomb, CoulombViscous, Stribeck};
 use fmm_identify::{
     Candidate, Experiment, FrictionCurve, IdentifyError, Inquiry, Machine, Preparation, Terms, Warning, compare, search,
@@ -167,6 +169,9 @@ fn the_search_finds_a_bent_spring_beside_falling_friction() {
         assert!((finding.value() - truth).abs() < 3.5 * finding.uncertainty().unwrap(), "{name}: {found}");
     }
     let curve = FrictionCurve::beside(preferred, &decays).unwrap();
+    assert!(FrictionCurve::beside_within(preferred, &decays, Duration::ZERO).is_err());
+    let within = FrictionCurve::beside_within(preferred, &decays, Duration::from_secs(3600)).unwrap();
+    assert_eq!(within.at_rest().value(), curve.at_rest().value());
     assert!(curve.limits().is_empty(), "{curve}");
     let (low, high) = curve.at_rest().interval(0.95).unwrap();
     assert!(low < 2.2 && 2.2 < high, "{curve}");
