@@ -149,7 +149,7 @@ fn is_decimal_comma(lines: &[Line]) -> Result<bool, RecordError> {
     }
     let text = lines.first().map(|line| text(line.text.trim_ascii())).unwrap_or_default();
     let what = format!(
-        "\"{text}\" may be two whole numbers or one with a decimal comma; give the separator, a comma or another"
+        "\"{text}\" may be two whole numbers or one with a decimal comma; put a line above with the name of each column"
     );
     Err(RecordError::options(what))
 }
