@@ -17,6 +17,10 @@ LINES = [
     for line in json.loads((ROOT / f"tests/data/golden/{name}.json").read_text())
     if line.split()[0] in ("identify", "compare", "backbone", "budget", "frf", "force", "design", "simulate")
 ]
+RUNS = " ".join(f"examples/data/flexure/run_{number}.csv" for number in (1, 2, 3))
+#: Several records of one machine, each under its load.
+LINES.append(f"identify {RUNS} --law coulomb_viscous --mass 10.391 --normal-loads 14,14.5,15")
+LINES.append(f"compare {RUNS} --law viscous,coulomb --normal-load 14")
 FLAGS = {"posterior", "repair", "turn-sign"}
 
 
@@ -44,6 +48,8 @@ def called(line):
 def answer(line):
     command, files, keywords = called(line)
     function = getattr(fmm, command)
+    if command in ("identify", "compare") and len(files) > 1:
+        return function(files, **keywords)
     if command in ("force", "frf"):
         if "channels" in keywords:
             keywords["channels"] = keywords["channels"].split(",")
