@@ -37,7 +37,7 @@ pub trait SpeedFormula: Debug + Send + Sync {
 /// faster.
 ///
 /// ```
-/// use fmm_friction::{LawParameter, OwnLaw, OwnMember, Role, SlidingLaw, SpeedFormula};
+/// use fmm_friction::{LawParameter, OwnLaw, Role, SlidingLaw, SpeedFormula};
 /// use fmm_model::{Bounds, Dual, Parameter, Scalar};
 ///
 /// #[derive(Debug)]
@@ -55,7 +55,7 @@ pub trait SpeedFormula: Debug + Send + Sync {
 ///     LawParameter::new(parameter("rise", "(s/m)^0.5"), Role::Level).typically(0.1),
 /// ];
 /// let law = OwnLaw::new("root", parameters, Box::new(Root))?;
-/// let member: OwnMember<'_, Dual<2>> = law.at(&[Dual::<2>::variable(0.2, 0), Dual::variable(0.1, 1)])?;
+/// let member = law.at(&[Dual::<2>::variable(0.2, 0), Dual::variable(0.1, 1)])?;
 /// let coefficient = member.coefficient(Dual::from(0.25));
 /// assert_eq!((coefficient.value(), member.breakaway().value()), (0.25, 0.2));
 /// assert!((coefficient.partial(0) - 1.0).abs() < 1e-9 && (coefficient.partial(1) - 0.5).abs() < 1e-9);
