@@ -110,7 +110,10 @@ impl OwnLaw {
     ///
     /// # Errors
     /// [`LawError::WrongCount`] and [`LawError::OutOfBounds`].
-    pub fn at<D: Scalar>(&self, values: &[D]) -> Result<impl SlidingLaw<D> + Clone + Debug, LawError> {
+    pub fn at<'a, D: Scalar>(
+        &'a self,
+        values: &[D],
+    ) -> Result<impl SlidingLaw<D> + Clone + Debug + use<'a, D>, LawError> {
         all_checked(&self.name, &self.parameters, values)?;
         Ok(OwnMember { law: self, values: values.to_vec() })
     }
