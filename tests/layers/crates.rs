@@ -243,9 +243,15 @@ fn no_crate_takes_more_from_others_than_is_stated() {
     assert_eq!(taken, stated);
 }
 
-/// Who cites a version finds it.
+/// Who cites a version, installs the wheel or reads what changed finds the same one.
 #[test]
-fn the_citation_is_of_this_version() {
-    let citation = include_str!("../../CITATION.cff");
-    assert!(citation.lines().any(|line| line == concat!("version: ", env!("CARGO_PKG_VERSION"))), "{citation}");
+fn versions_are_in_step() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, text, line) in [
+        ("CITATION.cff", include_str!("../../CITATION.cff"), format!("version: {version}")),
+        ("python/Cargo.toml", include_str!("../../python/Cargo.toml"), format!("version = \"{version}\"")),
+        ("CHANGELOG.md", include_str!("../../CHANGELOG.md"), format!("## {version} - ")),
+    ] {
+        assert!(text.lines().any(|found| found.starts_with(&line)), "{file} has no line {line:?}");
+    }
 }
