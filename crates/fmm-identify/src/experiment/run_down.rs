@@ -218,13 +218,35 @@ impl Speeds {
     fn release(&self) -> Option<f64> {
         /// Fall before, over that of as long a time after, below which the speed was held (1). Origin: chosen.
         const HELD: f64 = 0.25;
-        let count = self.parts.len();
-        let most = (0..count).map(|index| self.speed(index)).fold(f64::NEG_INFINITY, f64::max);
-        let last = (0..count).rev().find(|index| self.speed(*index) >= most - BEYOND_CHANCE * self.noise)?;
+        let top = |count: usize| {
+            let most = (0..count).map(|index| self.speed(index)).fold(f64::NEG_INFINITY, f64::max);
+            (0..count).rev().find(|index| self.speed(*index) >= most - BEYOND_CHANCE * self.noise)
+        };
+        let (mut count, mut last) = (self.parts.len(), top(self.parts.len())?);
+        if last + 2 >= count {
+            // What drives the machine again at the end is as fast as what drove it before.
+            count = self.trough()?;
+            last = top(count)?;
+        }
         let after = self.speed(last) - self.speed((2 * last).min(count - 1));
         let held = last > 2 && self.speed(0) - self.speed(last) < HELD * after;
         // The release lies in one of two parts.
         (held && last + 2 < count).then(|| self.parts[last + 2].2)
+    }
+
+    /// The part with the lowest speed before a rise up to the end of the record, if the speed fell to it by as much as
+    /// tells another run.
+    fn trough(&self) -> Option<usize> {
+        let mut lowest = self.parts.len().checked_sub(1)?;
+        for index in (0..lowest).rev() {
+            let fall = (BEYOND_CHANCE * 1.5 * self.noise).max(PUSHED * self.speed(index).abs());
+            if self.speed(index) < self.speed(lowest) {
+                lowest = index;
+            } else if self.speed(index) > self.speed(lowest) + fall {
+                return Some(lowest);
+            }
+        }
+        None
     }
 
     /// Time (s) at which the speed is lowest before it rises again, if it does.
