@@ -1,5 +1,6 @@
 //! Run-down: a motion without a spring, which friction alone slows down.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use fmm_model::ModelError;
@@ -69,6 +70,12 @@ impl Experiment {
             return Err(IdentifyError::wrong_quantity("a run-down", "a displacement or a velocity", quantity));
         }
         let (record, gain_uncertainty, clock_uncertainty) = usable(record, preparation)?;
+        if begins_anew(&record) {
+            return Err(IdentifyError::not_seen(
+                "the angle begins anew after each turn; add a turn at each of its jumps, as unwrap of NumPy and MATLAB \
+                 does for angles in rad",
+            ));
+        }
         let seen = Speeds::of(&record);
         // Who says where to begin or to end knows what is there.
         let release = if preparation.from.is_none() { seen.release() } else { None };
@@ -128,6 +135,17 @@ impl Experiment {
     pub(crate) fn is_run_down(&self) -> bool {
         self.run_down.is_some()
     }
+}
+
+/// True if it is an angle in rad that jumps back by whole turns as it goes on.
+fn begins_anew(record: &Record) -> bool {
+    let steps = || record.values().windows(2).map(|pair| pair[1] - pair[0]);
+    let rest = |step: f64| step - TAU * (step / TAU).round();
+    let path: f64 = steps().map(rest).sum();
+    let is_jump = |step: f64| (step / TAU).round() * path < 0.0;
+    // Where a step is a large part of a turn, a turn more or less does not show.
+    let are_small = steps().all(|step| rest(step).abs() < 0.25 * TAU);
+    record.unit() == "rad" && are_small && steps().any(is_jump)
 }
 
 /// True if these are run-downs, and none of them has a spring; `None` if some of them are.

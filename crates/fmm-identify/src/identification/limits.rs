@@ -4,6 +4,7 @@ use fmm_fit::Fit;
 use fmm_model::Restoring;
 
 use crate::experiment::Experiment;
+use crate::experiment::run_down::have_both_directions;
 use crate::finding::Finding;
 use crate::identification::findings::inseparable;
 use crate::identification::{FittedMotion, Identification};
@@ -37,6 +38,11 @@ impl Warning {
             (Scale::PerUnitMass, load) => warnings.push(Self::ScaleUnknown { load_known: load.is_some() }),
             (Scale::Mass(_) | Scale::Stiffness(_), None) => warnings.push(Self::NormalLoadUnknown),
             _ => {}
+        }
+        // About an axis there is no slope.
+        let is_line = |decay: &Experiment| decay.is_run_down() && matches!(decay.record().unit(), "m" | "m/s");
+        if decays.iter().any(is_line) && !have_both_directions(decays) {
+            warnings.push(Self::OneDirection);
         }
         for decay in decays {
             let is_bent = machine.restoring() != Restoring::Linear || identification.fitted.model.terms.has_spring();

@@ -310,6 +310,8 @@ pub enum Warning {
         /// Unit of the record.
         unit: String,
     },
+    /// All run-downs go one way, so that a constant force counts as friction.
+    OneDirection,
     /// The time that was given ended before all laws were tried.
     TimeLimit,
     /// The hammer hit again.

@@ -124,6 +124,11 @@ impl Warning {
                  sensor, or begin later"
             ),
             Self::NotSi { unit } => write!(f, "the record is in {unit}: {}", limit_of_unit(unit)),
+            Self::OneDirection => write!(
+                f,
+                "by the signs of the velocities all runs go one way: a constant force, such as that of a slope, counts \
+                 as friction; runs in both directions, with opposite signs, tell them apart"
+            ),
             _ => self.write_of_choice(f),
         }
     }

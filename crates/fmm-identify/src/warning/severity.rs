@@ -56,6 +56,7 @@ impl Warning {
             | Self::NoisyMotion { .. }
             | Self::CoarseMotion { .. }
             | Self::TimeLimit
+            | Self::OneDirection
             | Self::FurtherHit { .. }
             | Self::Overload { .. }
             | Self::CoarsePulse { .. }

@@ -3,7 +3,7 @@
 use fmm_friction::{Coulomb, CoulombViscous};
 use fmm_identify::{
     Candidate, Comparison, Experiment, FrictionCurve, Identification, IdentifyError, Inquiry, Known, Machine,
-    Preparation, identify, search,
+    Preparation, Warning, identify, search,
 };
 use fmm_record::{Quantity, Record};
 use rand_chacha::ChaCha8Rng;
@@ -194,8 +194,10 @@ fn slope_and_wind_are_told_by_both_directions() {
         assert!(off(&found, name, truth).abs() < 3.0, "{name}, {truth}: {found}");
     }
     assert!((value(&found, "slope_force") / 1200.0 / slope_with_wind - 1.0).abs() < 0.1, "{found}");
-    // One direction alone calls it friction.
+    assert!(!found.warnings().contains(&Warning::OneDirection), "{found}");
+    // One direction alone calls it friction, and says so.
     let alone = Inquiry::of(&machine, &runs[..1]).candidate(&law).unwrap();
+    assert!(alone.warnings().contains(&Warning::OneDirection), "{alone}");
     assert!(alone.finding("wind").is_none() && off(&alone, "friction_per_mass", losses.a).abs() > 10.0, "{alone}");
 }
 
@@ -274,6 +276,24 @@ fn intervals_hold_as_often_as_they_say() {
     };
     let share = (0..200).filter(|seed| inside(9000 + seed)).count();
     assert!((181..=198).contains(&share), "{share} of 200");
+}
+
+/// An angle that begins anew after each turn is refused with what to do; one that goes on by large steps is not.
+#[test]
+fn an_angle_that_begins_anew_is_named() {
+    let of = |of_angle: &dyn Fn(f64) -> f64, rate: f64| {
+        let angle = |i: u32| of_angle(CASES[0].motion(20.0, f64::from(i) / rate).1);
+        let record =
+            Record::sampled(rate, noisy((0..1500).map(angle), 1e-3, 3), Quantity::Displacement, "rad").unwrap();
+        Experiment::run_down(&record, &Preparation::default())
+    };
+    for sign in [1.0, -1.0] {
+        let error = of(&|angle| (sign * angle).rem_euclid(std::f64::consts::TAU), 40.0).unwrap_err().to_string();
+        assert!(error.contains("begins anew"), "{error}");
+        for rate in [40.0, 5.0, 3.0] {
+            assert!(of(&|angle| sign * angle, rate).is_ok(), "{rate}");
+        }
+    }
 }
 
 #[test]
