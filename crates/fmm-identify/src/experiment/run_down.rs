@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use fmm_model::ModelError;
-use fmm_record::{Examination, Quantity, Record, noise};
+use fmm_record::{Examination, Quantity, Record, noise, quantisation_step};
 
 use super::{Experiment, FEWEST_SAMPLES, ring_down, usable};
 use crate::error::IdentifyError;
 use crate::experiment::first_guess::{Dissipation, FirstGuess};
+use crate::experiment::preparation::COARSE;
 use crate::experiment::{Offset, Preparation, RecordSummary};
 use crate::linear_algebra::Span;
 
@@ -86,6 +87,7 @@ impl Experiment {
         let record = record.crop(from, to)?;
         let guess = seen.guess(&record)?;
         let rest = guess.rest;
+        let record = if rest.is_some() { before_last_step(record)? } else { record };
         let held_offset = match (preparation.offset, quantity) {
             (Offset::Fixed(value), _) => {
                 Some(ModelError::require_finite("offset", value, "in the unit of the record")?)
@@ -135,6 +137,20 @@ impl Experiment {
     pub(crate) fn is_run_down(&self) -> bool {
         self.run_down.is_some()
     }
+}
+
+/// A `record` that ends at rest, up to the last change of a position by more than a step of the converter, where its
+/// steps exceed the noise: at rest all samples are rounded alike, and are not as many observations.
+fn before_last_step(record: Record) -> Result<Record, IdentifyError> {
+    let (noise, values) = (record.noise(), record.values());
+    let step = quantisation_step(values).filter(|step| *step > COARSE * noise);
+    let Some(step) = step.filter(|_| record.quantity() == Quantity::Displacement) else { return Ok(record) };
+    let is_far = |value: &f64| values.last().is_some_and(|level| (value - level).abs() > 1.5 * step);
+    let last = values.iter().rposition(is_far).filter(|last| *last >= FEWEST_SAMPLES);
+    Ok(match last {
+        Some(last) => record.crop(record.start(), record.time(last))?,
+        None => record,
+    })
 }
 
 /// True if it is an angle in rad that jumps back by whole turns as it goes on.

@@ -75,7 +75,8 @@ impl Warning {
             Self::Rounded { step, unit } => write!(
                 f,
                 "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise; what follows \
-                 the last turning point was left out, as what swings within a step is rounded to another motion"
+                 the last turning point of a swing, or the last step of a position that comes to rest, was left out, \
+                 as what moves within a step is rounded to another motion"
             ),
             Self::Drift => write!(
                 f,

@@ -242,6 +242,23 @@ fn a_rotor_ends_at_rest() {
     assert!((torque.uncertainty().unwrap() / 0.05 / 5e-3 - 1.0).abs() < 0.2, "{found}");
 }
 
+/// A coarse encoder at rest shows the same step again and again, which is no friction beside that of the motion.
+#[test]
+fn an_encoder_at_rest_tells_nothing_more() {
+    let losses = Losses { a: 2.5, c: 0.01, q: 0.0 };
+    let step = std::f64::consts::TAU / 3600.0;
+    for phase in [0.2, 0.45, 0.7] {
+        let angle = |i: u32| ((losses.motion(20.0, f64::from(i) / 200.0).1 / step) + phase).round() * step;
+        let record = Record::sampled(200.0, (0..2000).map(angle).collect(), Quantity::Displacement, "rad").unwrap();
+        let run = experiment(&record);
+        assert!(run.summary().to < 7.7 && run.summary().noise > 0.1 * step, "{}", run.summary());
+        let found = search(&Machine::per_unit_mass(), &[run]).unwrap();
+        let best = found.preferred();
+        assert_eq!(best.law(), "coulomb_viscous", "{found}");
+        assert!(off(best, "friction_per_mass", losses.a).abs() < 3.0, "{best}");
+    }
+}
+
 /// A speed that stays above zero, such as one that a drive takes over, is no rest that shows the zero of the sensor.
 #[test]
 fn a_speed_that_stays_is_no_rest() {
