@@ -85,16 +85,10 @@ impl FrictionLevel {
         moments(&above)
     }
 
-    /// Probability of a value above `x`, of all above zero.
-    fn above(&self, x: f64) -> f64 {
-        let beyond = |x: f64| -> f64 {
-            self.parts
-                .iter()
-                .map(|(weight, mean, variance)| weight * upper_tail((x - mean) / variance.sqrt(), self.freedom))
-                .sum()
-        };
-        let all = beyond(0.0);
-        if all > 0.0 { (beyond(x.max(0.0)) / all).min(1.0) } else { 0.0 }
+    /// Probability of a value above `x`, those below zero not left out.
+    fn beyond(&self, x: f64) -> f64 {
+        let parts = self.parts.iter();
+        parts.map(|(weight, mean, variance)| weight * upper_tail((x - mean) / variance.sqrt(), self.freedom)).sum()
     }
 
     /// The value that is exceeded with probability 1 − `p`, by false position (Illinois).
@@ -103,7 +97,9 @@ impl FrictionLevel {
         let (mut low, mut high) = (reach(-1.0).fold(f64::INFINITY, f64::min).max(0.0), reach(1.0).fold(0.0, f64::max));
         // Near the middle first, as the ends lie far out.
         let (mean, deviation) = (self.value, self.uncertainty);
-        let excess = |x: f64| self.above(x) - (1.0 - p);
+        let all = self.beyond(0.0);
+        let above_of_all = |x: f64| if all > 0.0 { (self.beyond(x.max(0.0)) / all).min(1.0) } else { 0.0 };
+        let excess = |x: f64| above_of_all(x) - (1.0 - p);
         let (mut below, mut above) = (excess(low), excess(high));
         for x in [mean - 4.0 * deviation, mean, mean + 4.0 * deviation] {
             if x > low && x < high {
