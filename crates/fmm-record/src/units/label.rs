@@ -185,9 +185,9 @@ pub(crate) fn is_remark(text: &str) -> bool {
 /// The last word, where only a unit looks like it.
 fn behind_space(bare: &str, word: Word) -> Option<WrittenUnit> {
     let (before, last) = bare.rsplit_once([' ', '\t', ',', ':', ';']).unwrap_or(("", bare));
-    // A channel called by nothing but its unit has a slash in it: letters alone may be a symbol.
+    // A channel called by nothing but its unit has a slash in it, or is called rpm: other letters alone may be a symbol.
     match before.trim_end() {
-        _ if last.contains('/') => last.parse().ok(),
+        _ if last.contains('/') || is_in(SPEEDS, &last.to_lowercase()) => last.parse().ok(),
         before if before.is_empty() || before.ends_with('/') => None,
         _ => last_part(last, word),
     }
@@ -203,6 +203,9 @@ fn behind_slash(bare: &str) -> Option<WrittenUnit> {
 /// Units that a suffix or a last word may be, in small letters.
 const SUFFIXES: &str = "mm um µm μm micron microns rad mrad urad deg ° mdeg degrees radians rpm dps mdps mps kph kmh \
     mph lbf lb lbs klbf kip kips volts volt counts count ticks lsb cts";
+
+/// Units of speeds that no symbol looks like.
+const SPEEDS: &str = "rpm dps mdps kph kmh mph";
 
 /// Suffixes that are a unit behind a word for its quantity only: they may be a medium, a mass centre, a measured value.
 const DOUBTFUL: &str = "m cm km g mg ft";
@@ -285,6 +288,7 @@ mod tests {
             ("Velocity, mm/s", 1e-3, "m/s"),
             ("Angle: deg", DEGREE, "rad"),
             ("m/s", 1.0, "m/s"),
+            ("RPM", std::f64::consts::TAU / 60.0, "rad/s"),
             ("theta_rad", 1.0, "rad"),
             ("Theta_Rad", 1.0, "rad"),
             ("omega_rad_per_s", 1.0, "rad/s"),

@@ -90,7 +90,7 @@ impl fmt::Display for Quantity {
 /// |---|---|
 /// | length | `m`, `mm`, `µm`, `um`, `micron`, `in`, `mil`, `ft`, `millimetres` |
 /// | angle | `rad`, `mrad`, `deg`, `°`, `rev` |
-/// | velocity | a length or an angle per time: `mm/s`, `m s^-1`, `ms⁻¹`, `km/h`, `deg/sec`, `°/s`; `rpm`, `dps`, `ips`, `mph` |
+/// | velocity | a length or an angle per time: `mm/s`, `m s^-1`, `ms⁻¹`, `km/h`, `deg/sec`, `°/s`; `rpm`, `1/min`, `U/min`, `dps`, `ips`, `mph` |
 /// | acceleration | one per time squared: `m/s^2`, `m/s²`, `m/s**2`, `mm/s/s`, `rad/s2`; `g`, `gn`, `mg` |
 /// | force, torque | `N`, `kN`, `mN`, `lbf`, `lb`, `kip`, `kgf`, `N m`, `N mm`, `lb ft` |
 /// | anything | `V`, `mV`, `A`, `mA`; `counts`, `ticks`, `LSB`, of unknown size |
@@ -191,15 +191,21 @@ impl fmt::Display for WrittenUnit {
     }
 }
 
+/// Spellings of turns a minute, of which "one" and letters of other languages are units nowhere else.
+const TURNS_A_MINUTE: [&str; 8] = ["1/min", "min-1", "min^-1", "min⁻¹", "u/min", "tr/min", "r/min", "umdr/min"];
+
 impl FromStr for WrittenUnit {
     type Err = RecordError;
 
     fn from_str(text: &str) -> Result<Self, RecordError> {
         let written = text.trim().to_owned();
-        let found = Unit::written(&written).and_then(|unit| of_number(&unit)).and_then(|found| {
-            let is_alike = |si: &str| of_number(&Unit::of(si)).is_some_and(|other| other.is_alike(&found));
-            MEASURED.iter().find(|(si, _)| is_alike(si)).map(|measured| (found.factor(), *measured))
-        });
+        let is_turns = TURNS_A_MINUTE.contains(&written.to_lowercase().as_str());
+        let found = Unit::written(if is_turns { "rpm" } else { &written }).and_then(|unit| of_number(&unit)).and_then(
+            |found| {
+                let is_alike = |si: &str| of_number(&Unit::of(si)).is_some_and(|other| other.is_alike(&found));
+                MEASURED.iter().find(|(si, _)| is_alike(si)).map(|measured| (found.factor(), *measured))
+            },
+        );
         match found {
             Some((factor, (si, quantity))) => Ok(Self { written, si, factor, quantity }),
             None => Err(RecordError::unclear(
@@ -260,7 +266,10 @@ mod tests {
         all(&["deg/s", "°/s", "deg/sec", "deg s^-1", "dps", "DPS", "degrees/second"], 0.017_453_292_519_943_295);
         all(&["mdps"], 17.453_292_519_943_295e-6);
         all(&["rev/s"], std::f64::consts::TAU);
-        all(&["rpm", "RPM", "rev/min"], 0.104_719_755_119_659_77);
+        all(
+            &["rpm", "RPM", "rev/min", "1/min", "min^-1", "min⁻¹", "U/min", "tr/min", "r/min"],
+            0.104_719_755_119_659_77,
+        );
     }
 
     #[test]
