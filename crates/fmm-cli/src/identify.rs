@@ -15,7 +15,7 @@ use crate::host::Host;
 use crate::input::{Choice, DRIVE, Given, Question};
 use crate::output::{Output, Wanted};
 use crate::posterior::Posterior;
-use crate::refusal::placed;
+use crate::refusal::{Kind, placed};
 use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
@@ -300,7 +300,14 @@ fn found(
         decays.push(experiment(arguments, &input.record, &preparation, host).map_err(named)?);
         origins.push(input.origin);
         remarks.extend(input.warnings);
-        digests.push(report::digest(&given.bytes(host)?));
+        let digest = report::digest(&given.bytes(host)?);
+        if let Some(first) = digests.iter().position(|other| *other == digest) {
+            let (copy, first) = (given.name(), all[first].name());
+            let what =
+                format!("{copy} holds the same bytes as {first}, and a copy is no further evidence; leave it out");
+            return Err(Kind::Contradiction.refusal(what).into());
+        }
+        digests.push(digest);
     }
     let mut questions = arguments.question.under(&arguments.normal_loads, all.len())?;
     let mut question = questions.remove(0);

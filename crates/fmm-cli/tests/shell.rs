@@ -66,6 +66,13 @@ fn several_records_are_fitted_as_one() {
     let output = fmm_in(&examples, &format!("compare {runs} --normal-loads 14"));
     let error = String::from_utf8(output.stderr).unwrap();
     assert!(error.contains("--normal-loads has 1 load(s) for 2 record(s)"), "{error}");
+    std::fs::copy(folder.join("there.csv"), folder.join("copy.csv")).unwrap();
+    let output = fmm_in(&examples, &format!("compare {runs} {}", record("copy.csv")));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("copy.csv holds the same bytes as") && error.contains("there.csv, and a copy is no"),
+        "{error}"
+    );
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
