@@ -296,8 +296,8 @@ fn what_cannot_be_is_refused_and_named() {
         Plan::new(guess, vec![test]).unwrap_err().to_string()
     };
     let heavier = release(0.02).with_added_mass(known(1.0, 0.0)).unwrap();
-    assert!(plan(heavier).contains("neither mass nor stiffness is known"));
-    assert!(plan(release(0.02).under_load(known(3.0, 0.0)).unwrap()).contains("give the machine one"));
+    assert!(plan(heavier).contains("neither is known of the machine"));
+    assert!(plan(release(0.02).under_load(known(3.0, 0.0)).unwrap()).contains("give the machine its normal load"));
     let good = Plan::new(berger(), vec![release(0.022)]).unwrap();
     assert!(good.predict(&[1]).is_err() && good.best(&Aim::Determinant, 0).is_err());
     let unknown = good.best(&Aim::finding("my"), 1).unwrap_err().to_string();
