@@ -23,7 +23,7 @@ pub enum Detail {
 /// let found = answer(["fmm", "compare", "--law", "coulomb_viscous", "--to", "5"], &Host::default())?;
 /// let fits = found.fits().unwrap();
 /// let [FittedRecord { unit, time, measured, fitted }] = &fits[..] else { panic!("one record") };
-/// assert_eq!((unit.as_str(), time.len(), measured.len()), ("rad/s", fitted.len(), fitted.len()));
+/// assert_eq!((unit.as_str(), time.len(), measured.len()), ("V", fitted.len(), fitted.len()));
 /// # Ok::<(), fmm_cli::Refusal>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
