@@ -21,7 +21,8 @@ const ONTOLOGY: &str =
 /// Name of the experiment within the document.
 const EXPERIMENT: &str = "#experiment";
 
-/// Part of the sheet, the relation of the experiment to it, and the class of that end.
+/// Parts of the sheet, the relation of the experiment to what they describe, its class, and its relation to their
+/// fields.
 const PARTS: &[(&[&str], &str, &str, &str)] = &[
     (&["Test"], "tdo:hasIdentifier", "tdo:ProcessGeneralIdentifyingInformation", "tdo:isComprisedOf"),
     (&["Device"], "tdo:employsEquipment", "tdo:Tribometer", "tdo:hasIdentifier"),
@@ -48,27 +49,20 @@ pub(crate) fn document(campaign: &Campaign, rows: &[Row], summary: &Summary) -> 
         ("@id".to_owned(), json!(EXPERIMENT)),
         ("@type".to_owned(), json!(["tdo:TribologicalExperiment", "schema:Dataset"])),
     ]);
-    let given = || fields.iter().filter(|field| field.value.is_some());
-    for field in given().filter(|field| field.term.starts_with("schema:")) {
-        experiment.insert(field.term.to_owned(), json!(field.value));
+    let given = fields.iter().filter(|field| field.value.is_some());
+    let (of_data, mut others): (Vec<&Field>, Vec<&Field>) = given.partition(|field| field.term.starts_with("schema:"));
+    experiment.extend(of_data.iter().map(|field| (field.term.to_owned(), json!(field.value))));
+    if let Some(place) = others.iter().position(|field| field.key == LUBRICANT) {
+        let medium = json!({ "@type": "tdo:InterfacialMedium", "tdo:hasIdentifier": entry(others.remove(place)) });
+        experiment.insert("tdo:makesUseOfConsumable".to_owned(), medium);
     }
     for (parts, relation, class, inner) in PARTS {
-        let of_part = |field: &&Field| {
-            parts.contains(&field.part) && !field.term.starts_with("schema:") && field.key != LUBRICANT
-        };
-        let entries: Vec<Value> = given().filter(of_part).map(entry).collect();
+        let entries: Vec<Value> = others.extract_if(.., |field| parts.contains(&field.part)).map(entry).collect();
         if !entries.is_empty() {
             experiment.insert((*relation).to_owned(), json!({ "@type": class, *inner: entries }));
         }
     }
-    let lubricants: Vec<Value> = given().filter(|field| field.key == LUBRICANT).map(entry).collect();
-    if !lubricants.is_empty() {
-        let medium = json!({ "@type": "tdo:InterfacialMedium", "tdo:hasIdentifier": lubricants });
-        experiment.insert("tdo:makesUseOfConsumable".to_owned(), medium);
-    }
-    let placed =
-        |field: &Field| field.term.starts_with("schema:") || PARTS.iter().any(|part| part.0.contains(&field.part));
-    let others: Vec<Value> = given().filter(|field| !placed(field)).map(entry).collect();
+    let others: Vec<Value> = others.into_iter().map(entry).collect();
     experiment.insert("schema:additionalProperty".to_owned(), json!(others));
     experiment.insert("tdo:generatesFile".to_owned(), rows.iter().map(record).collect());
     experiment.insert("schema:variableMeasured".to_owned(), summary.quantities.iter().map(consensus).collect());

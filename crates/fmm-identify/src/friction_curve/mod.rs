@@ -117,12 +117,7 @@ impl FrictionCurve {
     /// # Errors
     /// As for [`of`](Self::of), and [`IdentifyError::Contradiction`] for other `experiments` than those of `found`.
     pub fn beside(found: &Identification, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
-        Self::with_terms(
-            found.machine(),
-            found.fitted.model.terms.beside_friction(),
-            &found.experiments(experiments)?,
-            None,
-        )
+        Self::beside_until(found, experiments, None)
     }
 
     /// The same, given up where it takes longer than `limit`.
@@ -134,12 +129,16 @@ impl FrictionCurve {
         experiments: &[Experiment],
         limit: Duration,
     ) -> Result<Self, IdentifyError> {
-        Self::with_terms(
-            found.machine(),
-            found.fitted.model.terms.beside_friction(),
-            &found.experiments(experiments)?,
-            Instant::now().checked_add(limit),
-        )
+        Self::beside_until(found, experiments, Instant::now().checked_add(limit))
+    }
+
+    fn beside_until(
+        found: &Identification,
+        experiments: &[Experiment],
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
+        let terms = found.fitted.model.terms.beside_friction();
+        Self::with_terms(found.machine(), terms, &found.experiments(experiments)?, end)
     }
 
     fn with_terms(

@@ -14,34 +14,29 @@ use super::{DIRECTIONS, FEW, Law, Motion};
 /// Result of a simulation, or of a law that is followed.
 type Done = Result<(), EvaluationError>;
 
-/// Simulations of the laws of one family, and friction of theirs along measured motions.
-pub(crate) trait Members: Debug + Sync {
+/// Laws whose motions are simulated in numbers of kind `D`.
+pub(crate) trait Simulated<D: Scalar> {
     /// Simulates a motion.
-    fn plain(&self, motion: &Motion<f64>, sampling: &Sampling, trajectory: &mut Trajectory) -> Done;
+    fn simulate(&self, motion: &Motion<D>, sampling: &Sampling, trajectory: &mut Trajectory<D>) -> Done;
+}
 
-    /// Simulates a motion with derivatives in few directions.
-    fn few(&self, motion: &Motion<Dual<FEW>>, sampling: &Sampling, trajectory: &mut Trajectory<Dual<FEW>>) -> Done;
-
-    /// Simulates a motion with derivatives.
-    fn with_derivatives(
-        &self,
-        motion: &Motion<Dual<DIRECTIONS>>,
-        sampling: &Sampling,
-        trajectory: &mut Trajectory<Dual<DIRECTIONS>>,
-    ) -> Done;
-
+/// Laws that are followed along measured motions in numbers of kind `D`.
+pub(crate) trait Followed<D: Scalar> {
     /// Friction coefficient (1) of the law of these `values` at the sample of each location; of a law of the speed that
     /// leaps at rest none, 0, where the contact may not slide.
-    fn along(&self, values: &[f64], alignment: Alignment<'_, f64>, friction: &mut Vec<f64>) -> Done;
+    fn along(&self, values: &[D], alignment: Alignment<'_, D>, friction: &mut Vec<D>) -> Done;
+}
 
-    /// The same with derivatives.
-    fn along_with_derivatives(
-        &self,
-        values: &[Dual<DIRECTIONS>],
-        alignment: Alignment<'_, Dual<DIRECTIONS>>,
-        friction: &mut Vec<Dual<DIRECTIONS>>,
-    ) -> Done;
-
+/// Laws of one family, or one law that is known at run time only, in plain numbers and with derivatives.
+pub(crate) trait Members:
+    Simulated<f64>
+    + Simulated<Dual<FEW>>
+    + Simulated<Dual<DIRECTIONS>>
+    + Followed<f64>
+    + Followed<Dual<DIRECTIONS>>
+    + Debug
+    + Sync
+{
     /// Friction coefficient (1) of steady sliding by these `values` at a speed (m/s) that grows or, if it is `losing`,
     /// falls.
     fn steady(&self, values: &[f64], speed: f64, losing: bool) -> Option<f64>;
@@ -73,49 +68,20 @@ impl FamilyVisitor for Laws {
     }
 }
 
-/// Simulates a motion by family `F`.
-fn simulate<F: LawFamily, D: Scalar>(motion: &Motion<D>, sampling: &Sampling, trajectory: &mut Trajectory<D>) -> Done {
-    let scenario = motion.scenario(F::at(&motion.law)?)?;
-    Ok(simulate_into::<F, _>(&scenario, sampling, motion.tolerance, trajectory)?)
+impl<F: LawFamily, D: Scalar> Simulated<D> for Of<F> {
+    fn simulate(&self, motion: &Motion<D>, sampling: &Sampling, trajectory: &mut Trajectory<D>) -> Done {
+        let scenario = motion.scenario(F::at(&motion.law)?)?;
+        Ok(simulate_into::<F, _>(&scenario, sampling, motion.tolerance, trajectory)?)
+    }
 }
 
-/// Simulates a motion by a law that is known at run time only.
-fn slide<D: Scalar>(law: &OwnLaw, motion: &Motion<D>, sampling: &Sampling, trajectory: &mut Trajectory<D>) -> Done {
-    let engine = motion.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?;
-    Ok(engine.run_into(&motion.scenario(law.at(&motion.law)?)?, sampling, trajectory)?)
+impl<F: LawFamily, D: Scalar> Followed<D> for Of<F> {
+    fn along(&self, values: &[D], alignment: Alignment<'_, D>, friction: &mut Vec<D>) -> Done {
+        along::<F, _>(values, alignment, friction)
+    }
 }
 
 impl<F: LawFamily> Members for Of<F> {
-    fn plain(&self, motion: &Motion<f64>, sampling: &Sampling, trajectory: &mut Trajectory) -> Done {
-        simulate::<F, _>(motion, sampling, trajectory)
-    }
-
-    fn few(&self, motion: &Motion<Dual<FEW>>, sampling: &Sampling, trajectory: &mut Trajectory<Dual<FEW>>) -> Done {
-        simulate::<F, _>(motion, sampling, trajectory)
-    }
-
-    fn with_derivatives(
-        &self,
-        motion: &Motion<Dual<DIRECTIONS>>,
-        sampling: &Sampling,
-        trajectory: &mut Trajectory<Dual<DIRECTIONS>>,
-    ) -> Done {
-        simulate::<F, _>(motion, sampling, trajectory)
-    }
-
-    fn along(&self, values: &[f64], alignment: Alignment<'_, f64>, friction: &mut Vec<f64>) -> Done {
-        along::<F, _>(values, alignment, friction)
-    }
-
-    fn along_with_derivatives(
-        &self,
-        values: &[Dual<DIRECTIONS>],
-        alignment: Alignment<'_, Dual<DIRECTIONS>>,
-        friction: &mut Vec<Dual<DIRECTIONS>>,
-    ) -> Done {
-        along::<F, _>(values, alignment, friction)
-    }
-
     fn steady(&self, values: &[f64], speed: f64, losing: bool) -> Option<f64> {
         F::steady_coefficient(&F::at::<f64>(values).ok()?, speed, losing)
     }
@@ -129,39 +95,21 @@ impl<F: LawFamily> Members for Of<F> {
     }
 }
 
+impl<D: Scalar> Simulated<D> for OwnLaw {
+    fn simulate(&self, motion: &Motion<D>, sampling: &Sampling, trajectory: &mut Trajectory<D>) -> Done {
+        let engine = motion.tolerance.map_or_else(|| Ok(RungeKutta::default()), RungeKutta::new)?;
+        Ok(engine.run_into(&motion.scenario(self.at(&motion.law)?)?, sampling, trajectory)?)
+    }
+}
+
+impl<D: Scalar> Followed<D> for OwnLaw {
+    fn along(&self, values: &[D], alignment: Alignment<'_, D>, friction: &mut Vec<D>) -> Done {
+        along_sliding(&self.at(values)?, alignment, friction);
+        Ok(())
+    }
+}
+
 impl Members for OwnLaw {
-    fn plain(&self, motion: &Motion<f64>, sampling: &Sampling, trajectory: &mut Trajectory) -> Done {
-        slide(self, motion, sampling, trajectory)
-    }
-
-    fn few(&self, motion: &Motion<Dual<FEW>>, sampling: &Sampling, trajectory: &mut Trajectory<Dual<FEW>>) -> Done {
-        slide(self, motion, sampling, trajectory)
-    }
-
-    fn with_derivatives(
-        &self,
-        motion: &Motion<Dual<DIRECTIONS>>,
-        sampling: &Sampling,
-        trajectory: &mut Trajectory<Dual<DIRECTIONS>>,
-    ) -> Done {
-        slide(self, motion, sampling, trajectory)
-    }
-
-    fn along(&self, values: &[f64], alignment: Alignment<'_, f64>, friction: &mut Vec<f64>) -> Done {
-        along_sliding(&self.at(values)?, alignment, friction);
-        Ok(())
-    }
-
-    fn along_with_derivatives(
-        &self,
-        values: &[Dual<DIRECTIONS>],
-        alignment: Alignment<'_, Dual<DIRECTIONS>>,
-        friction: &mut Vec<Dual<DIRECTIONS>>,
-    ) -> Done {
-        along_sliding(&self.at(values)?, alignment, friction);
-        Ok(())
-    }
-
     fn steady(&self, values: &[f64], speed: f64, _losing: bool) -> Option<f64> {
         self.at(values).ok().map(|member| member.coefficient(speed)).filter(|coefficient| coefficient.is_finite())
     }

@@ -285,7 +285,7 @@ impl<'p> ForceProblem<'p> {
         let delay = self.forces.delay.map_or(Dual::from(0.0), seeded);
         let deflection = self.deflection(record).map_or(Dual::from(0.0), seeded);
         let alignment = self.alignment(record, delay, deflection, &buffers.locations);
-        self.law().members.along_with_derivatives(&self.law().values(&fitted), alignment, &mut buffers.seeded)
+        self.law().members.along(&self.law().values(&fitted), alignment, &mut buffers.seeded)
     }
 
     /// Fills the residuals, and the derivatives of each record by its rows of the table.

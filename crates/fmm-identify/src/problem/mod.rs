@@ -202,7 +202,7 @@ impl<'a> Problem<'a> {
         sampling: &Sampling,
         trajectory: &mut Trajectory,
     ) -> Result<(), EvaluationError> {
-        self.law().members.plain(motion, sampling, trajectory)
+        self.law().members.simulate(motion, sampling, trajectory)
     }
 
     /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the

@@ -132,9 +132,8 @@ impl Problem<'_> {
     /// Fills one part with what each used sample shows.
     fn fill_samples(&self, p: &[f64], part: Part<'_>) -> Result<(), EvaluationError> {
         let members = self.law().members;
-        let few: Simulate<'_, Dual<FEW>> = &|motion, sampling, out| members.few(motion, sampling, out);
-        let more: Simulate<'_, Dual<DIRECTIONS>> =
-            &|motion, sampling, out| members.with_derivatives(motion, sampling, out);
+        let few: Simulate<'_, Dual<FEW>> = &|motion, sampling, out| members.simulate(motion, sampling, out);
+        let more: Simulate<'_, Dual<DIRECTIONS>> = &|motion, sampling, out| members.simulate(motion, sampling, out);
         if part.directions.len() <= FEW { self.fill_by(few, p, part) } else { self.fill_by(more, p, part) }
     }
 
