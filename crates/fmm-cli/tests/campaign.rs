@@ -142,7 +142,8 @@ fn a_list_is_split_and_joined() {
     let home = folder("list");
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(3));
     let mut list = "[common]\nmass = 1\nrate = 200\n[sheet]\ndevice = \"flexure\"\n\
-                    authors = \"A. Author\"\ntitle = \"Six runs\"\nlubricant = \"none\"\n"
+                    authors = \"A. Author\"\ntitle = \"Six runs\"\nlubricant = \"none\"\n\
+                    moving_material = \"bronze\"\nfixed_material = \"steel\"\n"
         .to_owned();
     for (run, load) in [3.5, 7.0, 14.0, 3.5, 7.0, 14.0].into_iter().enumerate() {
         let mut text = "v [m/s]\n".to_owned();
@@ -182,6 +183,10 @@ fn a_list_is_split_and_joined() {
     let experiment = &linked["@graph"][0];
     assert_eq!(experiment["tdo:generatesFile"].as_array().unwrap().len(), 6);
     assert_eq!(experiment["schema:creator"], "A. Author");
+    for (body, material) in [("tdo:stressesAsCounterBody", "bronze"), ("tdo:stressesAsBaseBody", "steel")] {
+        assert_eq!(experiment[body]["tdo:hasTechnicalSpecification"][0]["tdo:hasText"], material, "{body}");
+    }
+    assert_eq!(experiment["tdo:makesUseOfConsumable"]["tdo:hasIdentifier"]["tdo:hasText"], "none");
     let of_first = &experiment["tdo:generatesFile"][0]["tdo:isControlledBy"]["tdo:hasQuantification"];
     assert_eq!(of_first["tdo:hasRationalNumberValue"], 3.5, "{experiment:#}");
     assert_eq!(experiment["schema:variableMeasured"][0]["qudt:numericValue"], summary["quantities"][0]["mean"]);
