@@ -1,8 +1,8 @@
 //! Linked data of a campaign: its record sheet, records and results as JSON-LD, for data bases that others search.
 //!
-//! Classes and relations are those of the TriboDataFAIR ontology 0.1.1 (Garabedian et al., doi:10.1038/s41597-022-01429-9,
-//! CC BY 4.0), data sets are described by schema.org, uncertainties by QUDT. By the ontology's order of definitions the
-//! fixed specimen is the base body and the moving one the counter body.
+//! Classes and relations are those of the TriboDataFAIR ontology 0.1.1 (Garabedian et al.,
+//! doi:10.1038/s41597-022-01429-9, CC BY 4.0), data sets are described by schema.org, uncertainties by QUDT. By the
+//! ontology's order of definitions the fixed specimen is the base body and the moving one the counter body.
 
 use std::error::Error;
 
