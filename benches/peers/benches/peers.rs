@@ -1,4 +1,4 @@
-//! The Berger law's ring-down by the thesis' Euler loop, by the Runge-Kutta engine and by diffsol, in one run.
+//! Ring-downs by the thesis' Euler loop, by the engine of FMM for their law and by diffsol, in one run.
 //!
 //! `cargo bench --manifest-path benches/peers/Cargo.toml` prints criterion's estimates, then error and ratio of each.
 //! At matched accuracy means: of the tolerances tried, the fastest whose greatest error is at most 1e-10 m/s.
@@ -10,8 +10,9 @@ mod ratio;
 use std::hint::black_box;
 
 use criterion::Criterion;
-use fmm_peers::{berger, by_diffsol};
-use fmm_sim::{Engine, RungeKutta, Thesis, Trajectory};
+use fmm_friction::SlidingLaw;
+use fmm_peers::{BERGER, COULOMB, berger, by_diffsol, coulomb, sampling};
+use fmm_sim::{Engine, Exact, RungeKutta, Scenario, Thesis, Trajectory};
 use ratio::{median, print_row};
 
 /// Tolerances tried (1).
@@ -25,49 +26,67 @@ fn greatest_error(velocity: &[f64], reference: &[f64]) -> f64 {
     velocity.iter().zip(reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    let (scenario, sampling) = berger();
-    let run = |engine: RungeKutta| engine.run(&scenario, &sampling).expect("a motion").velocity().values().to_vec();
-    let reference = run(RungeKutta::new(2e-15).expect("valid"));
+/// An engine with the name of its rows.
+type Named<L> = (String, Box<dyn Engine<f64, L>>);
 
-    let mut errors = Vec::new();
-    let mut group = criterion.benchmark_group("berger");
+/// Times the `engines` and diffsol on the motion of a `case`, and adds their greatest errors (m/s).
+fn measure<L: SlidingLaw<f64>>(
+    criterion: &mut Criterion,
+    (name, case): (&str, [f64; 8]),
+    scenario: &Scenario<f64, L>,
+    engines: Vec<Named<L>>,
+    errors: &mut Vec<(String, f64)>,
+) {
+    let sampling = sampling();
+    let strict = RungeKutta::new(2e-15).expect("valid").run(scenario, &sampling).expect("a motion");
+    let reference = strict.velocity().values();
+    let mut group = criterion.benchmark_group(name);
+    let thesis: Named<L> = ("thesis".to_owned(), Box::new(Thesis::A3));
     let mut motion = Trajectory::new();
-    group.bench_function("thesis", |bencher| {
-        bencher.iter(|| Thesis::A3.run_into(black_box(&scenario), &sampling, &mut motion));
-    });
-    errors.push(("thesis".to_owned(), greatest_error(motion.velocity().values(), &reference)));
-    let engines = TOLERANCES.map(|tolerance| RungeKutta::new(tolerance).expect("valid"));
-    for engine in engines.into_iter().chain([RungeKutta::default()]) {
-        let name = format!("fmm_{:e}", engine.tolerance());
-        group.bench_function(&name, |bencher| {
-            bencher.iter(|| engine.run_into(black_box(&scenario), &sampling, &mut motion));
-        });
-        errors.push((name, greatest_error(&run(engine), &reference)));
+    for (engine_name, engine) in std::iter::once(thesis).chain(engines) {
+        let mut run = || engine.run_into(black_box(scenario), &sampling, &mut motion).expect("a motion");
+        group.bench_function(&engine_name, |bencher| bencher.iter(&mut run));
+        run();
+        errors.push((format!("{name}/{engine_name}"), greatest_error(motion.velocity().values(), reference)));
     }
     let mut velocity = Vec::new();
     for tolerance in TOLERANCES {
-        let name = format!("diffsol_{tolerance:e}");
-        group.bench_function(&name, |bencher| bencher.iter(|| by_diffsol(black_box(tolerance), &mut velocity)));
-        by_diffsol(tolerance, &mut velocity);
-        errors.push((name, greatest_error(&velocity, &reference)));
+        let engine_name = format!("diffsol_{tolerance:e}");
+        group.bench_function(&engine_name, |bencher| {
+            bencher.iter(|| by_diffsol(case, black_box(tolerance), &mut velocity));
+        });
+        by_diffsol(case, tolerance, &mut velocity);
+        errors.push((format!("{name}/{engine_name}"), greatest_error(&velocity, reference)));
     }
     group.finish();
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    let mut errors = Vec::new();
+    let exact: Vec<Named<_>> = vec![("fmm_exact".to_owned(), Box::new(Exact::default()))];
+    measure(&mut criterion, ("coulomb", COULOMB), &coulomb(), exact, &mut errors);
+    let of_tolerance = |engine: RungeKutta| -> Named<_> { (format!("fmm_{:e}", engine.tolerance()), Box::new(engine)) };
+    let tolerances = TOLERANCES.map(|tolerance| RungeKutta::new(tolerance).expect("valid"));
+    let engines = tolerances.into_iter().chain([RungeKutta::default()]).map(of_tolerance).collect();
+    measure(&mut criterion, ("berger", BERGER), &berger(), engines, &mut errors);
     criterion.final_summary();
 
-    let mut best: [Option<f64>; 2] = [None; 2];
     for (name, error) in &errors {
-        let Some(time) = median(&format!("berger/{name}")) else { continue };
+        let Some(time) = median(name) else { continue };
         println!("{name}: {:.1} µs, error {error:.1e} m/s", 1e-3 * time);
-        for (best, peer) in best.iter_mut().zip(["fmm", "diffsol"]) {
-            if name.starts_with(peer) && *error <= WANTED {
-                *best = Some(best.map_or(time, |best| best.min(time)));
-            }
-        }
     }
-    if let (Some(thesis), [Some(ours), Some(theirs)]) = (median("berger/thesis"), best) {
-        print_row(&format!("diffsol / fmm at {WANTED:e} m/s"), theirs / ours, 5.0..);
-        print_row(&format!("thesis / fmm at {WANTED:e} m/s"), thesis / ours, 1.0..);
+    for case in ["coulomb", "berger"] {
+        let best = |peer: &str| {
+            let good = errors.iter().filter(|(_, error)| *error <= WANTED);
+            let of_peer = good.filter(|(name, _)| name.starts_with(&format!("{case}/{peer}")));
+            of_peer.filter_map(|(name, _)| median(name)).min_by(f64::total_cmp)
+        };
+        if let (Some(thesis), Some(ours), Some(theirs)) =
+            (median(&format!("{case}/thesis")), best("fmm"), best("diffsol"))
+        {
+            print_row(&format!("{case}: diffsol / fmm at {WANTED:e} m/s"), theirs / ours, 5.0..);
+            print_row(&format!("{case}: thesis / fmm at {WANTED:e} m/s"), thesis / ours, 1.0..);
+        }
     }
 }
