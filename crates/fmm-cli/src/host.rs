@@ -58,6 +58,11 @@ impl<'a> Host<'a> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The laws that are not in the catalogue.
+    pub(crate) fn laws(&self) -> &[&'static OwnLaw] {
+        &self.laws
+    }
+
     /// The law with terms beside it that is called `name`.
     pub(crate) fn candidate(&self, name: &str) -> Result<Candidate, IdentifyError> {
         Candidate::named_among(name, &self.laws)

@@ -3,8 +3,8 @@
 use std::error::Error;
 
 use fmm_friction::{
-    FamilyVisitor, Gms, LawError, LawFamily, LawKind, LawVisitor as _, MaxwellSlip, MaxwellSlipOf, Smoothed, Stribeck,
-    catalogue,
+    FamilyVisitor, Gms, LawError, LawFamily, LawKind, LawVisitor as _, MaxwellSlip, MaxwellSlipOf, OwnLaw, SlidingLaw,
+    Smoothed, Stribeck, catalogue,
 };
 use fmm_sim::{Bristle, Engine as _, RungeKutta, Scenario, Trajectory, simulate_into};
 
@@ -21,7 +21,8 @@ pub(crate) struct Entry {
     pub(crate) name: &'static str,
     /// Its parameters.
     pub(crate) slots: fn() -> Vec<Slot>,
-    make: fn(Given) -> Made,
+    /// The law with what was given for it, among those of one's own.
+    make: fn(Given, &[&'static OwnLaw]) -> Made,
 }
 
 /// Makes entries of families.
@@ -35,7 +36,7 @@ impl FamilyVisitor for AllEntries {
         if F::kind() == LawKind::Elements {
             return None;
         }
-        let make = |given: Given| made(&given, |values| F::at(values).map(of_family::<F>));
+        let make = |given: Given, _: &[_]| made(&given, |values| F::at(values).map(of_family::<F>));
         Some(Entry { name: F::NAME, slots: || Slot::numbers(F::NAME, F::PARAMETERS), make })
     }
 }
@@ -48,7 +49,7 @@ pub(crate) fn laws() -> Vec<Entry> {
 const MAXWELL_SLIP: Entry = Entry {
     name: "maxwell_slip",
     slots: || vec![Slot::of("stiffness", "κ", "1/m", Shape::List), Slot::of("level", "w", "1", Shape::List)],
-    make: |given| {
+    make: |given, _| {
         let elements = given.pairs()?;
         made(&given, |_| MaxwellSlip::new(&elements).map(of_family::<MaxwellSlipOf<1>>))
     },
@@ -63,7 +64,7 @@ const GMS: Entry = Entry {
         slots.push(Slot::of("share", "α", "1", Shape::List));
         slots
     },
-    make: |given| {
+    make: |given, _| {
         let elements = given.pairs()?;
         made(&given, |values| {
             let (curve, attraction) = values.split_at(Stribeck::PARAMETERS.len());
@@ -76,8 +77,8 @@ const GMS: Entry = Entry {
 const SMOOTHED: Entry = Entry {
     name: "smoothed",
     slots: || vec![Slot::of("law", "", "", Shape::Law), Slot::of("smoothing_width", "ε", "m/s", Shape::Number)],
-    make: |mut given| {
-        let (inner, law) = contact(given.inner()?)?;
+    make: |mut given, own| {
+        let (inner, law) = contact(given.inner()?, own)?;
         let Some(law) = law.sliding else {
             return Err(format!(
                 "the law {inner} has an internal state and cannot be smoothed in the speed; a law of the speed alone \
@@ -85,10 +86,7 @@ const SMOOTHED: Entry = Entry {
             )
             .into());
         };
-        made(&given, |values| {
-            let law = Smoothed::new(law, values[0])?;
-            Ok(Make { law, automatic: |scenario, sampling| RungeKutta::default().run(scenario, sampling) }.sliding())
-        })
+        made(&given, |values| Ok(of_speed(Smoothed::new(law, values[0])?)))
     },
 };
 
@@ -102,22 +100,34 @@ fn of_family<F: LawFamily>(law: F::At<f64>) -> Contact {
     F::visit(Make { law, automatic })
 }
 
+/// A law of the speed alone, moved by the engine for any of them.
+fn of_speed<L: SlidingLaw<f64> + Clone + 'static>(law: L) -> Contact {
+    Make { law, automatic: |scenario, sampling| RungeKutta::default().run(scenario, sampling) }.sliding()
+}
+
 fn made(given: &Given, make: impl FnOnce(&[f64]) -> Result<Contact, LawError>) -> Made {
     Ok(make(&given.numbers()?).map_err(|error| format!("the law {}: {error}", given.law))?)
 }
 
-/// The law of an object `{name: {parameter: value, …}}`, with its name.
+/// The law of an object `{name: {parameter: value, …}}`, with its name; those of one's `own` stand before the others.
 ///
 /// # Errors
 /// If there is no such law, or its parameters are not what it needs.
-pub(crate) fn contact(law: Entries) -> Result<(&'static str, Contact), Box<dyn Error>> {
-    let known = || format!("the laws are {}", laws().iter().map(|entry| entry.name).collect::<Vec<_>>().join(", "));
+pub(crate) fn contact(law: Entries, own: &[&'static OwnLaw]) -> Result<(&'static str, Contact), Box<dyn Error>> {
+    let known = || {
+        let names = own.iter().map(|law| law.name()).chain(laws().into_iter().map(|entry| entry.name));
+        format!("the laws are {}", names.collect::<Vec<_>>().join(", "))
+    };
     let Ok([(name, Field::Object(parameters))]) = <[_; 1]>::try_from(law.0) else {
         let example = "{\"coulomb\": {\"mu\": 0.2}}";
         return Err(format!("a law is an object with one key, its name, such as {example}; {}", known()).into());
     };
+    if let Some(own) = own.iter().find(|own| own.name() == name) {
+        let given = Given::sort(own.name(), Slot::numbers(own.name(), own.parameters()), parameters)?;
+        return Ok((own.name(), made(&given, |values| own.at(values).map(of_speed))?));
+    }
     let entry = laws().into_iter().find(|entry| entry.name == name);
     let entry = entry.ok_or_else(|| format!("there is no law \"{name}\"; {}", known()))?;
     let given = Given::sort(entry.name, (entry.slots)(), parameters)?;
-    Ok((entry.name, (entry.make)(given)?))
+    Ok((entry.name, (entry.make)(given, own)?))
 }

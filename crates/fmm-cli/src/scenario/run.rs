@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+use fmm_friction::OwnLaw;
 use fmm_model::Restoring;
 use fmm_sim::State;
 
@@ -26,14 +27,14 @@ pub(crate) struct Simulation {
 }
 
 impl Simulation {
-    /// Reads the text of a scenario file.
+    /// Reads the text of a scenario file, whose law may be one's `own`.
     ///
     /// # Errors
     /// Its text says what is wrong and what would be right.
-    pub(crate) fn read(text: &str) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn read(text: &str, own: &[&'static OwnLaw]) -> Result<Self, Box<dyn Error>> {
         let file: File = serde_json::from_str(text).map_err(|error| format!("the scenario cannot be read: {error}"))?;
         let has_law = file.law.is_some();
-        let (law, contact) = contact(file.law.unwrap_or_else(frictionless))?;
+        let (law, contact) = contact(file.law.unwrap_or_else(frictionless), own)?;
         let choice = Choice { engine: file.engine, tolerance: file.tolerance };
         let engine = choice.engine;
         if !contact.engines.contains(&engine) {

@@ -11,6 +11,7 @@ use std::fmt::{self, Write as _};
 use std::path::PathBuf;
 
 use clap::Args;
+use fmm_friction::OwnLaw;
 
 use crate::answer::{Answer, Detail, Document};
 use crate::figure::{ends, label};
@@ -34,6 +35,7 @@ pub(crate) struct Arguments {
 pub(crate) struct Simulated {
     /// Text of the scenario, which is read again where it is drawn: a law is at home in one thread.
     scenario: String,
+    laws: Vec<&'static OwnLaw>,
     motion: Motion,
     written: Option<String>,
 }
@@ -42,15 +44,21 @@ pub(crate) fn simulate(arguments: &Arguments, host: &Host<'_>) -> Result<Simulat
     let path = &arguments.scenario;
     let text = host.text(path)?;
     let wrong = |error: Box<dyn Error>| Kind::Document.unless_known(placed(path.display())(error));
-    let scenario = Simulation::read(&text).map_err(wrong)?;
+    let scenario = Simulation::read(&text, host.laws()).map_err(wrong)?;
     let motion = host.while_busy("simulating", || scenario.run().map_err(placed(path.display())))??;
     let written = arguments.record.write(&scenario, &motion)?;
-    Ok(Simulated { scenario: text, motion, written })
+    Ok(Simulated { scenario: text, laws: host.laws().to_vec(), motion, written })
+}
+
+impl Simulated {
+    fn simulation(&self) -> Result<Simulation, Box<dyn Error>> {
+        Simulation::read(&self.scenario, &self.laws)
+    }
 }
 
 impl Answer for Simulated {
     fn text(&self) -> Result<String, Box<dyn Error>> {
-        Ok(text(&Simulation::read(&self.scenario)?, &self.motion)?.trim_end().to_owned())
+        Ok(text(&self.simulation()?, &self.motion)?.trim_end().to_owned())
     }
 
     fn document(&self, _: Detail) -> Result<String, Box<dyn Error>> {
@@ -58,7 +66,7 @@ impl Answer for Simulated {
     }
 
     fn pictures(&self) -> Result<Vec<(String, String)>, Box<dyn Error>> {
-        figures::pictures(&Simulation::read(&self.scenario)?, &self.motion)
+        figures::pictures(&self.simulation()?, &self.motion)
     }
 
     fn written(&self) -> Option<String> {

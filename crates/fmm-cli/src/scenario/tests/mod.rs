@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fmm_friction::{Coulomb, LawFamily, OwnLaw, SpeedFormula};
 use serde_json::Value;
 
 mod references;
@@ -19,7 +20,7 @@ fn read(path: &Path) -> String {
 }
 
 fn run(scenario: &str) -> Result<Motion, Box<dyn std::error::Error>> {
-    Simulation::read(scenario)?.run()
+    Simulation::read(scenario, &[])?.run()
 }
 
 /// The document of `--json`.
@@ -34,7 +35,7 @@ fn the_scenario_files_run_and_keep_their_energy() {
     for entry in std::fs::read_dir(folder("examples/scenarios")).unwrap() {
         let path = entry.unwrap().path();
         let name = path.display();
-        let scenario = Simulation::read(&read(&path)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let scenario = Simulation::read(&read(&path), &[]).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(!scenario.title.is_empty() && !scenario.description.is_empty(), "{name} does not say what it is");
         let motion = scenario.run().unwrap_or_else(|error| panic!("{name}: {error}"));
         // A coast-down starts and stops.
@@ -184,10 +185,43 @@ fn every_engine_answers_its_laws_and_refuses_the_others() {
     assert!(off > 1e-12 && off < 1e-2, "a tolerance of 1e-4 leaves {off:e} J of 1.25 J");
 }
 
+/// Coulomb's law as one of one's own.
+#[derive(Debug)]
+struct Flat;
+
+impl SpeedFormula for Flat {
+    fn coefficients(&self, arguments: &[Vec<f64>]) -> Vec<f64> {
+        arguments[1].clone()
+    }
+}
+
+#[test]
+fn a_law_of_ones_own_moves_as_the_same_law_of_the_catalogue() {
+    let own: &[&'static OwnLaw] =
+        &[Box::leak(Box::new(OwnLaw::new("flat", Coulomb::PARAMETERS.to_vec(), Box::new(Flat)).unwrap()))];
+    let with = |law: &str| {
+        format!(
+            r#"{{"oscillator": {{"mass": 2, "stiffness": 800}}, "normal_load": 10, "initial": {{"position": 0.03}},
+                "law": {law}, "duration": 1.6}}"#
+        )
+    };
+    let run = |law: &str| Simulation::read(&with(law), own).unwrap().run().unwrap();
+    let (flat, coulomb) = (run(r#"{"flat": {"coefficient": 0.2}}"#), run(r#"{"coulomb": {"mu": 0.2}}"#));
+    assert_eq!((flat.engine, coulomb.engine), ("runge_kutta", "exact"));
+    for (own, listed) in flat.samples.x.iter().zip(&coulomb.samples.x) {
+        assert!((own - listed).abs() < 1e-9 * 0.03, "{own} m and {listed} m");
+    }
+    let smoothed = run(r#"{"smoothed": {"law": {"flat": {"mu": 0.2}}, "smoothing_width": 1e-3}}"#);
+    assert!((smoothed.samples.x[100] - coulomb.samples.x[100]).abs() < 1e-4);
+    let wrong = |law: &str| Simulation::read(&with(law), own).map(|_| ()).unwrap_err().to_string();
+    assert!(wrong(r#"{"flatt": {}}"#).contains("the laws are flat, viscous"));
+    assert!(wrong(r#"{"flat": {}}"#).contains("the law flat needs coefficient"));
+}
+
 /// The friction that figures draw is that of the law, and of the work.
 #[test]
 fn friction_along_the_motion_is_that_of_the_law() {
-    let scenario = Simulation::read(&read(&folder("examples/scenarios/berger_16mm.json"))).unwrap();
+    let scenario = Simulation::read(&read(&folder("examples/scenarios/berger_16mm.json")), &[]).unwrap();
     // 8.604351 N times 0.228 + 0.261 exp(−2.852 · 0.2).
     let force = scenario.friction(-0.2, &[], false);
     assert!((force + 8.604_351 * 0.375_543).abs() < 1e-5, "{force} N");
@@ -195,10 +229,10 @@ fn friction_along_the_motion_is_that_of_the_law() {
     let level = scenario.run().unwrap().events[1].static_level;
     assert!((level - 8.604_351 * 0.489).abs() < 1e-12, "{level} N");
 
-    let pendulum = Simulation::read(&read(&folder("examples/scenarios/pendulum.json"))).unwrap();
+    let pendulum = Simulation::read(&read(&folder("examples/scenarios/pendulum.json")), &[]).unwrap();
     assert_eq!((scenario.units(), pendulum.units()), (["m", "m/s", "N"], ["rad", "rad/s", "N m"]));
 
-    let scenario = Simulation::read(&read(&folder("examples/scenarios/lugre_ring_down.json"))).unwrap();
+    let scenario = Simulation::read(&read(&folder("examples/scenarios/lugre_ring_down.json")), &[]).unwrap();
     let motion = scenario.run().unwrap();
     let (samples, work) = (&motion.samples, motion.energy.work.unwrap());
     let power = |index: usize| scenario.friction(samples.v[index], &[samples.z[0][index]], false) * samples.v[index];
