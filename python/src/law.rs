@@ -1,6 +1,6 @@
 //! A law of friction whose formula is a function of Python.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use fmm_friction::{FamilyVisitor, LawFamily, LawParameter, OwnLaw, Role, SpeedFormula, family_named};
 use fmm_model::{Bounds, Parameter};
@@ -15,7 +15,7 @@ struct Functions {
     coefficient: Py<PyAny>,
     derivatives: Option<Py<PyAny>>,
     /// What a function raised first.
-    raised: Arc<Mutex<Option<PyErr>>>,
+    raised: Mutex<Option<PyErr>>,
 }
 
 impl Functions {
@@ -50,15 +50,32 @@ impl Functions {
     }
 }
 
-impl SpeedFormula for Functions {
+/// Functions that go with the law of Python, while what the crates know of it stays.
+#[derive(Debug)]
+struct Lent(Weak<Functions>);
+
+impl SpeedFormula for Lent {
     fn coefficients(&self, arguments: &[Vec<f64>]) -> Vec<f64> {
         let points = arguments.first().map_or(0, Vec::len);
-        let found = Python::attach(|py| {
+        self.0
+            .upgrade()
+            .and_then(|functions| functions.coefficients(arguments))
+            .unwrap_or_else(|| vec![f64::NAN; points])
+    }
+
+    fn derivatives(&self, arguments: &[f64]) -> Option<Vec<f64>> {
+        self.0.upgrade()?.derivatives(arguments)
+    }
+}
+
+impl Functions {
+    fn coefficients(&self, arguments: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let points = arguments.first().map_or(0, Vec::len);
+        Python::attach(|py| {
             let arrays = arguments.iter().map(|argument| PyArray1::from_slice(py, argument));
             let found = PyTuple::new(py, arrays).and_then(|arrays| self.coefficient.bind(py).call1(arrays));
             self.kept(found.and_then(|found| Self::numbers(&found, points, "the function of a law")))
-        });
-        found.unwrap_or_else(|| vec![f64::NAN; points])
+        })
     }
 
     fn derivatives(&self, arguments: &[f64]) -> Option<Vec<f64>> {
@@ -93,11 +110,12 @@ impl FamilyVisitor for Names {
     }
 }
 
-/// A law of friction of one's own. It lives as long as the process.
+/// A law of friction of one's own. Its functions live as long as it does; name and parameters, some hundred bytes, stay
+/// for the process, as the crates hold laws so.
 #[pyclass(frozen)]
 pub(crate) struct Law {
     own: &'static OwnLaw,
-    raised: Arc<Mutex<Option<PyErr>>>,
+    functions: Arc<Functions>,
 }
 
 #[pymethods]
@@ -114,12 +132,11 @@ impl Law {
         if let Some(taken) = family_named(&name, &mut Names) {
             return Err(PyValueError::new_err(format!("{taken} is a law of the list; give yours another name")));
         }
-        let raised = Arc::<Mutex<Option<PyErr>>>::default();
-        let functions = Functions { coefficient, derivatives, raised: Arc::clone(&raised) };
+        let functions = Arc::new(Functions { coefficient, derivatives, raised: Mutex::default() });
         let parameters = parameters.into_iter().map(parameter).collect::<PyResult<Vec<_>>>()?;
-        let law = OwnLaw::new(name, parameters, Box::new(functions));
+        let law = OwnLaw::new(name, parameters, Box::new(Lent(Arc::downgrade(&functions))));
         let law = law.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(Self { own: Box::leak(Box::new(law)), raised })
+        Ok(Self { own: Box::leak(Box::new(law)), functions })
     }
 }
 
@@ -131,12 +148,12 @@ impl Law {
 
     /// True if a function of it raised an exception that was not taken.
     pub(crate) fn has_raised(&self) -> bool {
-        self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+        self.functions.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
     /// The exception that a function of it raised.
     pub(crate) fn take_raised(&self) -> Option<PyErr> {
-        self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
+        self.functions.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 

@@ -60,26 +60,30 @@ mod _core {
 
     /// What a command found.
     #[pyclass(frozen)]
-    struct Answer(Box<dyn fmm_cli::Answer>);
+    struct Answer {
+        found: Box<dyn fmm_cli::Answer>,
+        /// Asked again where a motion is drawn.
+        _laws: Vec<Py<Law>>,
+    }
 
     #[pymethods]
     impl Answer {
         fn text(&self, py: Python<'_>) -> PyResult<String> {
-            py.detach(|| self.0.text().map_err(failed)).map_err(|refusal| raised(py, refusal))
+            py.detach(|| self.found.text().map_err(failed)).map_err(|refusal| raised(py, refusal))
         }
 
         fn document(&self, py: Python<'_>, full: bool) -> PyResult<String> {
             let detail = if full { Detail::Full } else { Detail::Brief };
-            py.detach(|| self.0.document(detail).map_err(failed)).map_err(|refusal| raised(py, refusal))
+            py.detach(|| self.found.document(detail).map_err(failed)).map_err(|refusal| raised(py, refusal))
         }
 
         fn pictures(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
-            py.detach(|| self.0.pictures().map_err(failed)).map_err(|refusal| raised(py, refusal))
+            py.detach(|| self.found.pictures().map_err(failed)).map_err(|refusal| raised(py, refusal))
         }
 
         /// Samples of each record and of the preferred fit.
         fn fits<'py>(&self, py: Python<'py>) -> PyResult<Vec<Fit<'py>>> {
-            let fits = py.detach(|| self.0.fits().map_err(failed)).map_err(|refusal| raised(py, refusal))?;
+            let fits = py.detach(|| self.found.fits().map_err(failed)).map_err(|refusal| raised(py, refusal))?;
             let arrays = |fit: FittedRecord| {
                 (fit.unit, [fit.time, fit.measured, fit.fitted].map(|values| PyArray1::from_vec(py, values)))
             };
@@ -87,18 +91,18 @@ mod _core {
         }
 
         fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {
-            py.detach(|| self.0.page().map_err(failed)).map_err(|refusal| raised(py, refusal))
+            py.detach(|| self.found.page().map_err(failed)).map_err(|refusal| raised(py, refusal))
         }
 
         #[getter]
         fn remarks(&self) -> Vec<String> {
-            self.0.remarks().to_vec()
+            self.found.remarks().to_vec()
         }
 
         /// Why what was found is a failure nevertheless.
         #[getter]
         fn failure(&self) -> Option<String> {
-            self.0.verdict().err()
+            self.found.verdict().err()
         }
     }
 
@@ -125,7 +129,7 @@ mod _core {
         });
         match laws.iter().find_map(|law| law.get().take_raised()) {
             Some(error) => Err(error),
-            None => found.map(Answer).map_err(|refusal| raised(py, refusal)),
+            None => found.map(|found| Answer { found, _laws: laws }).map_err(|refusal| raised(py, refusal)),
         }
     }
 

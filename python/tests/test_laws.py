@@ -1,7 +1,10 @@
 """A law of one's own is fitted as a law of the list is, and its faults are told."""
 
+import copy
+import gc
 import pickle
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -150,6 +153,74 @@ def test_forces_and_campaigns_take_it():
     assert {model["model"] for model in own.document["models"]} == {"straight", "coulomb + linear"}
     campaign = fmm.batch(RUNS[:2], law=law, jobs=1, **MACHINE)
     assert set(campaign.to_frame()["law"]) == {"straight"}
+
+
+SCENARIO = {
+    "oscillator": {"mass": 2.0, "stiffness": 800.0},
+    "normal_load": 10.0,
+    "initial": {"position": 0.03},
+    "duration": 1.598,
+    "output": {"rate": 500.0},
+}
+
+
+def test_a_motion_under_it_is_simulated():
+    law = fmm.Law("straight", straight, STRAIGHT)
+    values = {"coefficient": 0.05, "viscous": 0.2}
+    own = fmm.simulate({**SCENARIO, "law": {"straight": values}}, law=law)
+    listed = fmm.simulate({**SCENARIO, "law": {"coulomb_viscous": values}})
+    assert own.position == pytest.approx(listed.position, abs=1e-9 * 0.03)
+    assert [event["kind"] for event in own.events] == [event["kind"] for event in listed.events]
+    assert "law straight, engine runge_kutta" in str(own) and own.figures()
+
+
+def test_what_was_simulated_is_found_again():
+    law = fmm.Law("root", root, ROOT)
+    motion = fmm.simulate({**SCENARIO, "law": {"root": {"coefficient": 0.05, "rise": 0.2}}}, law=[law])
+    v = motion.velocity + 2e-4 * np.random.default_rng(1).standard_normal(len(motion.time))
+    found = fmm.identify(motion.time, v, unit="m/s", mass=2, normal_load=10, law=law).findings
+    level, rise = found["mu"], found["contact_rise"]
+    assert abs(level.value - 0.05) < 3 * level.u < 0.01 and abs(rise.value - 2) < 3 * rise.u < 0.1
+
+
+def test_a_simulation_says_what_it_cannot_take():
+    law = fmm.Law("straight", straight, STRAIGHT)
+    with pytest.raises(fmm.FmmError, match="the laws are straight, viscous"):
+        fmm.simulate({**SCENARIO, "law": {"strait": {}}}, law=law)
+    with pytest.raises(ValueError, match="from the oscillator"):
+        fmm.simulate({**SCENARIO, "law": {"straight": {}}}, law=law.beside("linear"))
+
+    def broken(v, coefficient, viscous):
+        raise ZeroDivisionError("broken")
+
+    scenario = {**SCENARIO, "law": {"broken": {"coefficient": 0.1, "viscous": 0.0}}}
+    with pytest.raises(ZeroDivisionError, match="broken"):
+        fmm.simulate(scenario, law=fmm.Law("broken", broken, STRAIGHT))
+
+
+def test_its_functions_are_freed_with_it():
+    def function(v, coefficient):
+        return coefficient
+
+    alive = weakref.ref(function)
+    law = fmm.Law("level", function, STRAIGHT[:1])
+    motion = fmm.simulate({**SCENARIO, "law": {"level": {"coefficient": 0.05}}}, law=law)
+    del law, function
+    gc.collect()
+    assert alive() is not None and motion.figures()
+    del motion
+    gc.collect()
+    assert alive() is None
+
+
+def test_a_law_that_does_not_pickle_says_what_would():
+    law = fmm.Law("level", lambda v, coefficient: coefficient, STRAIGHT[:1])
+    with pytest.raises(
+        pickle.PicklingError, match="'level' cannot be pickled, as its function is a lambda: define it by def"
+    ):
+        pickle.dumps(law)
+    assert copy.copy(law) is law and copy.deepcopy(law) is law
+    assert pickle.loads(pickle.dumps(fmm.Law("straight", straight, STRAIGHT))).function is straight
 
 
 def test_faults_of_a_law_are_told(of_root):

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from . import results
 from ._run import Call, Progress, are_paths, document, is_path, options, paths, table
-from .law import own
+from .law import Law, own
 from .options import ForceOptions, FreeOptions, FrfOptions, IdentifyOptions, Path, RecordOptions, check
 
 if TYPE_CHECKING:
@@ -342,6 +342,7 @@ def budget(
 def simulate(
     scenario: Path | Mapping[str, Any],
     *,
+    law: Law | Sequence[Law] | None = None,
     record: Path | None = None,
     noise: float | None = None,
     seed: int | None = None,
@@ -352,6 +353,8 @@ def simulate(
     Args:
         scenario: path of JSON, or its content: ``oscillator``, ``law``, ``normal_load``, ``initial``, ``duration`` and
             the like, as ``fmm simulate --help`` lists them; all in SI units.
+        law: laws of one's own that the scenario names, as in ``{"law": {"root": {"coefficient": 0.1, "rise": 0.2}}}``
+            with ``Law("root", ...)``. Terms beside them are parts of the oscillator.
         record: table of CSV into which time, displacement and velocity are written.
         noise: noise in that table over the largest value of each column (1).
         seed: which noise.
@@ -361,8 +364,14 @@ def simulate(
         FmmError: the scenario is refused, or the engine has no answer.
     """
     path, files = document("scenario", scenario)
+    laws = own(law)
+    for one in laws:
+        if str(one) != one.name:
+            raise ValueError(
+                f"simulate() takes the terms of {str(one)!r} from the oscillator: give the law {one.name!r} alone"
+            )
     given = options({"record": record, "noise": noise, "seed": seed})
-    call = Call(["simulate", *given, "--", path], files)
+    call = Call(["simulate", *given, "--", path], files, laws)
     return results.Motion(call, call.answer(_told(progress)))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -51,7 +52,7 @@ class Parameter:
 
 
 class Law:
-    """A law of friction of one's own, for the keyword ``law`` of identify, compare and batch, and ``model`` of force.
+    """A law of one's own, for the keyword ``law`` of identify, compare, batch and simulate, and ``model`` of force.
 
     It is slow: Python is asked at every step of every simulation, so that a fit takes seconds where a law of the list
     takes milliseconds. It is right: the engine is that of all laws, with stick and slip in between, and its derivatives
@@ -70,6 +71,7 @@ class Law:
         ValueError: a name that is taken or no identifier, or bounds without a value.
 
     A function that is defined at the top of a module pickles, and with it the law and its results; a lambda does not.
+    The functions are freed with the law and its results.
 
     >>> def function(v, level, rise): return level + rise * np.sqrt(v)
     >>> law = Law("root", function, [Parameter("coefficient", "level"), Parameter("rise", "level", "(s/m)^0.5", 0.1)])
@@ -94,7 +96,7 @@ class Law:
         self.parameters = tuple(parameters)
         self.derivatives = derivatives
         self.core = _core.Law(name, [parameter.stated for parameter in self.parameters], function, derivatives)
-        """The law as the core has it; it lives as long as the process."""
+        """The law as the core has it."""
         self._terms: tuple[str, ...] = ()
 
     def beside(self, *terms: str) -> Law:
@@ -117,8 +119,24 @@ class Law:
         """Name and parameters."""
         return f"Law({str(self)!r}, {', '.join(parameter.name for parameter in self.parameters)})"
 
+    def __copy__(self) -> Law:
+        """The same law: nothing of it changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Law:
+        """The same law: nothing of it changes."""
+        return self
+
     def __reduce__(self) -> tuple[Any, ...]:
         """The functions, by their names."""
+        for function in (self.function, self.derivatives):
+            place = getattr(function, "__qualname__", "")
+            if "<" in place:
+                what = "a lambda" if place.endswith("<lambda>") else "defined inside of another function"
+                raise pickle.PicklingError(
+                    f"the law {self.name!r} cannot be pickled, as its function is {what}: define it by def at the top "
+                    "of a module; what else it needs goes into functools.partial of such a function"
+                )
         return _again, (self.name, self.function, self.parameters, self.derivatives, self._terms)
 
 
