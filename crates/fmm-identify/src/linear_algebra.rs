@@ -2,20 +2,68 @@
 
 use nalgebra::DMatrix;
 
+/// JᵀJ of the columns of J, which are equally long.
+///
+/// Rows are taken in blocks that stay in the cache for all pairs of columns, and each pair once: twenty columns of a
+/// million rows take a tenth of the time of four hundred scalar products.
+pub(crate) fn products(columns: &[&[f64]]) -> DMatrix<f64> {
+    /// Rows of a block: twenty columns of it are 160 kB.
+    const BLOCK: usize = 1024;
+    let order = columns.len();
+    let rows = columns.first().map_or(0, |column| column.len());
+    let mut sums = DMatrix::zeros(order, order);
+    fmm_model::widest(
+        #[inline(always)]
+        || {
+            for start in (0..rows).step_by(BLOCK) {
+                let block = start..rows.min(start + BLOCK);
+                for (j, b) in columns.iter().enumerate() {
+                    for (i, a) in columns[..=j].iter().enumerate() {
+                        sums[(i, j)] += product(&a[block.clone()], &b[block.clone()]);
+                    }
+                }
+            }
+        },
+    );
+    sums.fill_lower_triangle_with_upper_triangle();
+    sums
+}
+
+/// Scalar product of two columns, in the order in which vectors sum.
+#[inline(always)]
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    /// Sums side by side: one addition need not wait for the one before.
+    const LANES: usize = 32;
+    let (a, a_rest) = a.as_chunks::<LANES>();
+    let (b, b_rest) = b.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
 /// (JᵀJ)⁻ of the columns of J, row by row: J (JᵀJ)⁻ Jᵀ takes what the columns can follow and nothing else, however
 /// alike they are.
 pub(crate) fn inverse_of_products(columns: &[Vec<f64>]) -> Vec<f64> {
+    inverse(&products(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>()))
+}
+
+/// The same of these [`products`].
+pub(crate) fn inverse(products: &DMatrix<f64>) -> Vec<f64> {
     /// Square of the length of a combination of unit columns below which it is rounding.
     const ROUNDING: f64 = 1e-10;
-    let order = columns.len();
+    let order = products.nrows();
     // An empty matrix has no eigenvalues to ask for.
     if order == 0 {
         return Vec::new();
     }
-    let product = |i: usize, j: usize| -> f64 { columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum() };
-    let length = |i: usize| Some(product(i, i).sqrt().recip()).filter(|scale| scale.is_finite()).unwrap_or(0.0);
+    let length = |i: usize| Some(products[(i, i)].sqrt().recip()).filter(|scale| scale.is_finite()).unwrap_or(0.0);
     let scales: Vec<f64> = (0..order).map(length).collect();
-    let eigen = DMatrix::from_fn(order, order, |i, j| product(i, j) * scales[i] * scales[j]).symmetric_eigen();
+    let eigen = DMatrix::from_fn(order, order, |i, j| products[(i, j)] * scales[i] * scales[j]).symmetric_eigen();
     let inverse = eigen.eigenvalues.map(|square| if square > ROUNDING { square.recip() } else { 0.0 });
     let scaled = &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.transpose();
     (0..order * order).map(|at| (at / order, at % order)).map(|(i, j)| scaled[(i, j)] * scales[i] * scales[j]).collect()

@@ -4,7 +4,7 @@ use fmm_fit::{EvaluationError, Residuals};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::friction_curve::levels::LEVELS;
-use crate::linear_algebra::inverse_of_products;
+use crate::linear_algebra::{inverse, products};
 use crate::problem::Problem;
 use crate::residuals::noise::{ResidualNoise, Series};
 
@@ -12,14 +12,23 @@ use crate::residuals::noise::{ResidualNoise, Series};
 pub(super) struct Linearised {
     /// Places of the parameters behind the columns, the levels last.
     places: Vec<usize>,
+    /// Residuals of the records, and their derivatives.
     residuals: Vec<f64>,
     columns: Vec<Vec<f64>>,
-    /// Residuals of records; those of prior knowledge follow.
-    measured: usize,
+    of_records: Squares,
+    /// Those of prior knowledge.
+    of_knowledge: Squares,
     /// (JᵀJ)⁻ of the records, row by row.
     inverse: Vec<f64>,
     /// Residuals of the records at the best curve of all, without any knowledge of curves.
     left: Vec<f64>,
+}
+
+/// JᵀJ, Jᵀr and rᵀr of residuals r and their derivatives J.
+struct Squares {
+    products: DMatrix<f64>,
+    slopes: DVector<f64>,
+    sum: f64,
 }
 
 /// Gaussian likelihood of the levels b and of all else that is fitted, n.
@@ -51,47 +60,47 @@ impl Linearised {
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let (mut residuals, mut jacobian) = (vec![0.0; problem.len()], vec![0.0; elements]);
         problem.evaluate(p, &mut residuals, Some(&mut jacobian))?;
-        let mut columns = vec![vec![0.0; residuals.len()]; places.len()];
+        let measured = problem.measured();
+        let mut columns = vec![vec![0.0; measured]; places.len()];
+        let mut known = vec![vec![0.0; residuals.len() - measured]; places.len()];
         let (mut row, mut rest) = (0, jacobian.as_slice());
         for block in problem.blocks() {
+            // Blocks of prior knowledge follow those of the records.
+            let (all, start) = if row < measured { (&mut columns, row) } else { (&mut known, row - measured) };
             for parameter in block.parameters() {
                 let (column, others) = rest.split_at(block.rows());
                 rest = others;
                 if let Some(place) = places.iter().position(|place| place == parameter) {
-                    columns[place][row..row + block.rows()].copy_from_slice(column);
+                    all[place][start..start + block.rows()].copy_from_slice(column);
                 }
             }
             row += block.rows();
         }
-        let measured = problem.measured();
-        let of_records: Vec<Vec<f64>> = columns.iter().map(|column| column[..measured].to_vec()).collect();
-        let inverse = inverse_of_products(&of_records);
-        let mut left = residuals[..measured].to_vec();
-        let products: Vec<f64> = of_records.iter().map(|column| dot(column, &left)).collect();
-        for (row, column) in inverse.chunks(places.len()).zip(&of_records) {
-            let step = dot(row, &products);
+        let of_knowledge = Squares::of(&known, &residuals.split_off(measured));
+        let of_records = Squares::of(&columns, &residuals);
+        let inverse = inverse(&of_records.products);
+        let mut left = residuals.clone();
+        for (row, column) in inverse.chunks(places.len()).zip(&columns) {
+            let step = dot(row, of_records.slopes.as_slice());
             left.iter_mut().zip(column).for_each(|(left, derivative)| *left -= step * derivative);
         }
-        Ok(Self { places, residuals, columns, measured, inverse, left })
+        Ok(Self { places, residuals, columns, of_records, of_knowledge, inverse, left })
     }
 
     /// Residuals of the records.
     pub(super) fn residuals(&self) -> &[f64] {
-        &self.residuals[..self.measured]
+        &self.residuals
     }
 
     /// Sum of squares of all residuals.
     pub(super) fn sum_of_squares(&self) -> f64 {
-        dot(&self.residuals, &self.residuals)
+        self.of_records.sum + self.of_knowledge.sum
     }
 
     /// Sum of squares after `step`, if residuals were linear.
     pub(super) fn predicted(&self, step: &[f64]) -> f64 {
-        let mut residuals = self.residuals.clone();
-        for (by, column) in step.iter().zip(&self.columns) {
-            residuals.iter_mut().zip(column).for_each(|(residual, derivative)| *residual += by * derivative);
-        }
-        dot(&residuals, &residuals)
+        let step = DVector::from_column_slice(step);
+        self.of_records.after(&step) + self.of_knowledge.after(&step)
     }
 
     /// The values `p` after `share` of `step`.
@@ -103,7 +112,6 @@ impl Linearised {
 
     /// Noise of the records as the residuals at the best curve show it; `None` if it is white.
     pub(super) fn noise(&self, problem: &Problem<'_>, p: &[f64]) -> Option<ResidualNoise> {
-        let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| column[..self.measured].to_vec()).collect();
         let signals: Vec<Vec<f64>> =
             (0..problem.experiments().len()).map(|record| problem.signal_by(record, p, &self.residuals)).collect();
         let series: Vec<Series<'_>> = problem
@@ -114,7 +122,7 @@ impl Linearised {
                 rows,
                 signal: Some(signal),
                 period: experiment.record().rate() / experiment.guess.frequency(),
-                columns: &columns,
+                columns: &self.columns,
                 weights: &self.inverse,
                 plateaus: experiment.stays(),
             })
@@ -132,23 +140,18 @@ impl Linearised {
     ) -> Option<Likelihood> {
         let order = self.places.len();
         let rank = (0..order).filter(|i| self.inverse[i * (order + 1)] > 0.0).count();
-        let freedom = (self.measured as f64 - rank as f64).max(1.0);
+        let freedom = (self.residuals.len() as f64 - rank as f64).max(1.0);
         let variance = (dot(&self.left, &self.left) / freedom).max(problem.noise.powi(2) * LEAST_NOISE);
         // Columns of unit length.
-        let length = |column: &Vec<f64>| Some(dot(column, column).sqrt()).filter(|length| *length > 0.0).unwrap_or(1.0);
-        let scales: Vec<f64> = self.columns.iter().map(length).collect();
-        let product = |rows: std::ops::Range<usize>, i: usize, j: usize| {
-            dot(&self.columns[i][rows.clone()], &self.columns[j][rows]) / (scales[i] * scales[j])
-        };
-        let of_records = DMatrix::from_fn(order, order, |i, j| product(0..self.measured, i, j));
-        let slopes = |rows: std::ops::Range<usize>| {
-            DVector::from_fn(order, |i, _| {
-                dot(&self.columns[i][rows.clone()], &self.residuals[rows.clone()]) / scales[i]
-            })
-        };
+        let squares = self.of_records.products.diagonal() + self.of_knowledge.products.diagonal();
+        let length = |square: &f64| Some(square.sqrt()).filter(|length| *length > 0.0).unwrap_or(1.0);
+        let scales: Vec<f64> = squares.iter().map(length).collect();
+        let scaled =
+            |of: &Squares| DMatrix::from_fn(order, order, |i, j| of.products[(i, j)] / (scales[i] * scales[j]));
+        let slopes = |of: &Squares| DVector::from_fn(order, |i, _| of.slopes[i] / scales[i]);
+        let of_records = scaled(&self.of_records);
         let of_noise = noise.and_then(|noise| {
-            let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| column[..self.measured].to_vec()).collect();
-            let products = noise.products(&columns);
+            let products = noise.products(&self.columns);
             let mut products = DMatrix::from_fn(order, order, |i, j| products[i * order + j] / (scales[i] * scales[j]));
             let ridge = 1e-13 * products.diagonal().max();
             (0..order).for_each(|i| products[(i, i)] += ridge);
@@ -159,12 +162,11 @@ impl Linearised {
         let (weight, inflation) = of_noise.unwrap_or_else(|| (DMatrix::identity(order, order) / variance, 1.0));
         // Weighted from the left: JᵀJ M⁻¹ of a symmetric M, here its transpose M⁻¹ JᵀJ.
         let mut precision = weight.transpose() * &of_records;
-        let mut slope = -(weight.transpose() * slopes(0..self.measured));
-        let known = self.measured..self.residuals.len();
-        if !known.is_empty() {
-            let each = problem.noise.powi(-2);
-            precision += DMatrix::from_fn(order, order, |i, j| each * product(known.clone(), i, j));
-            slope -= slopes(known) * each;
+        let mut slope = -(weight.transpose() * slopes(&self.of_records));
+        let each = problem.noise.powi(-2);
+        if each.is_finite() {
+            precision += scaled(&self.of_knowledge) * each;
+            slope -= slopes(&self.of_knowledge) * each;
         }
         let precision = DMatrix::from_fn(order, order, |i, j| {
             0.5 * (precision[(i, j)] + precision[(j, i)]) * scales[i] * scales[j]
@@ -181,6 +183,20 @@ impl Linearised {
         let information = slope.rows(first, LEVELS) - mixed.transpose() * rest.solve(&rest_slope) + &of_levels * levels;
         let freedom = (freedom / inflation.max(1.0)).max(1.5);
         Some(Likelihood { precision: of_levels, information, freedom, variance, rest, mixed, slope: rest_slope })
+    }
+}
+
+impl Squares {
+    fn of(columns: &[Vec<f64>], residuals: &[f64]) -> Self {
+        let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).chain([residuals]).collect();
+        let (order, all) = (columns.len(), products(&all));
+        let slopes = all.column(order).rows(0, order).into_owned();
+        Self { products: all.view((0, 0), (order, order)).into_owned(), slopes, sum: all[(order, order)] }
+    }
+
+    /// rᵀr after `step`.
+    fn after(&self, step: &DVector<f64>) -> f64 {
+        self.sum + 2.0 * step.dot(&self.slopes) + step.dot(&(&self.products * step))
     }
 }
 
