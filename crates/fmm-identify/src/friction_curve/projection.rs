@@ -13,7 +13,7 @@ use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::friction_curve::fit::{Levelled, Settled};
 use crate::friction_curve::levels::{KNOTS, LEVELS};
-use crate::friction_curve::rules::{ENOUGH, EXPLAINED, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION};
+use crate::friction_curve::rules::{ENOUGH, EVEN, EXPLAINED, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION};
 use crate::machine::term::Term;
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
@@ -73,7 +73,8 @@ impl ShownFriction {
     ) -> Result<Self, IdentifyError> {
         let Levelled { problem, values, top, scale, line, line_squares } =
             Levelled::of(machine, &terms, experiments, end)?;
-        let settled = Settled::of(&problem, values, scale, MOST_STEPS_OF_PROJECTION, end)?;
+        let problem = problem.simulated_roughly();
+        let settled = Settled::of(&problem, values, scale, (MOST_STEPS_OF_PROJECTION, EVEN), end)?;
         let squares = line_squares.min(settled.near.sum_of_squares());
         let is_structured = settled.near.excess(&problem).is_some();
         let eigen = settled.likelihood.precision.clone().symmetric_eigen();
@@ -132,8 +133,6 @@ impl ShownFriction {
     /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name, or
     /// for a law with internal state one of several values.
     pub(crate) fn starts(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
-        /// Difference of misfits that makes none (1).
-        const EVEN: f64 = 1.0;
         let projected = self.all_projected(problem, others);
         let Some(best) = projected.first() else { return self.near(problem, others) };
         let count = if problem.table.family.is_of_speed() { 1 } else { projected.len() };

@@ -34,8 +34,16 @@ pub(super) const LEAST_WEIGHT: f64 = 1e-5;
 /// Linearisations at most. Origin: chosen; three to six are the rule.
 pub(super) const MOST_STEPS: usize = 20;
 
+/// Sum of squares over the least one above which linearisations go astray, and so many of them in turn after which they
+/// do not come back (1). Origin: chosen; a record with something beside a curve sends them from one side to the other.
+pub(super) const ASTRAY: f64 = 1.1;
+pub(super) const MOST_ASTRAY: usize = 5;
+
 /// The same before laws are projected (1). Origin: the misfits of laws are then known better than they have to be.
 pub(super) const MOST_STEPS_OF_PROJECTION: usize = 8;
+
+/// Difference of misfits that makes none (1). Origin: the chance of one parameter.
+pub(super) const EVEN: f64 = 1.0;
 
 /// Iterations of a law on the friction that is shown, and the relative fall of its misfit below which it ends (1).
 /// Origin: chosen; a fit to the record follows.
