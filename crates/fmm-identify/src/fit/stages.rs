@@ -82,7 +82,9 @@ pub(crate) fn fit_begun(
         return best_fit(problem, problem.name(), &[problem.behind_sensors(plain.fit.values())], options, observer);
     }
     let limited = |most: usize| options.clone().with_max_iterations(options.max_iterations().min(most));
-    let by_recast = problem.recast().and_then(|recast| {
+    let thinned = problem.thinned();
+    let few = thinned.as_ref().map(|thinned| problem.with_records(thinned).simulated_roughly());
+    let by_recast = few.as_ref().unwrap_or(problem).recast().and_then(|recast| {
         let found = fit_by_own(&recast, begin, &limited(MOST_RECAST), observer).ok()?;
         best_fit(problem, problem.name(), &[problem.of_recast(found.values())?], &limited(MOST_ROUGH), observer).ok()
     });
@@ -108,7 +110,7 @@ fn fit_by_own(
 /// there as a whole. Laws with more than a level and a viscous part continue the fit of one that has just these.
 fn fit_in_stages(problem: &Problem<'_>, options: &Options, observer: &mut Observer<'_>) -> Result<Fit, IdentifyError> {
     let thinned = problem.thinned();
-    let few = thinned.as_ref().map(|thinned| problem.with_records(thinned));
+    let few = thinned.as_ref().map(|thinned| problem.with_records(thinned).simulated_roughly());
     let search = few.as_ref().unwrap_or(problem);
     let found = if problem.is_elaborate() && !problem.has_spring() {
         let simple = Problem::of(&Candidate::of::<CoulombViscous>(), search.machine, search.experiments())?;
@@ -142,7 +144,7 @@ fn fit_from(
         |problem: &Problem<'_>, starts: &[Vec<f64>], options: &Options| fit_of_best(problem, starts, options, observer);
     let mut polish = options.clone();
     if let Some(thinned) = problem.thinned() {
-        let found = fit(&problem.with_records(&thinned), &starts, options)?;
+        let found = fit(&problem.with_records(&thinned).simulated_roughly(), &starts, options)?;
         starts = vec![found.values().to_vec()];
         polish = polish.with_max_iterations(options.max_iterations().div_ceil(3));
     }

@@ -153,7 +153,9 @@ pub(crate) fn is_force(role: Role) -> bool {
 
 /// True if `parameter` is a friction coefficient, a force by the normal load.
 pub(crate) fn is_coefficient(parameter: &LawParameter) -> bool {
-    is_force(parameter.role()) && Unit::of(parameter.parameter().unit()) == Unit::default()
+    let unit = parameter.parameter().unit();
+    // Asked for each value of a law: to read a unit takes longer than most laws do.
+    is_force(parameter.role()) && (unit == "1" || Unit::of(unit) == Unit::default())
 }
 
 #[cfg(test)]

@@ -282,7 +282,7 @@ impl Run<'_, '_> {
     }
 
     /// Options of a fit that is compared with others, beside the noise that the residuals `found` so far show.
-    fn limited(&self, found: &Found, most: usize) -> Options {
+    pub(super) fn limited(&self, found: &Found, most: usize) -> Options {
         let rows: usize = self.decays.iter().map(Experiment::rows).sum();
         // Of residuals that are alike over a time, so many are one independent one.
         let time = found.preferred().map_or(1.0, |preferred| preferred.structure.autocorrelation_time).max(1.0);
@@ -321,7 +321,8 @@ impl Run<'_, '_> {
     /// friction where the records ask for these whatever the friction; then, where more is asked for, by laws with
     /// presliding. A simple law `changes` if its friction changes during the records.
     fn fit_further(&self, found: &mut Found, tests: &mut Vec<ScoreTest>, changes: bool) -> Result<(), IdentifyError> {
-        let [of_speed, of_state] = [MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE].map(|most| self.limited(found, most));
+        let limited = [MOST_ITERATIONS, MOST_ITERATIONS_WITH_STATE, self.options.max_iterations()];
+        let [of_speed, of_state, of_corners] = limited.map(|most| self.limited(found, most));
         // A contact that yields is a spring that softens: it may be what another spring explains as well.
         let preslides_alone = self.shows_presliding(tests);
         let few = thinned(self.decays);
@@ -346,21 +347,38 @@ impl Run<'_, '_> {
             let spring = std::mem::take(tests).into_iter().filter(|test| test.extension == Extension::SofteningSpring);
             *tests = of_speed.score_tests(found).0.into_iter().chain(spring).collect();
         }
-        if found.is_structured() && beside.has_spring() {
-            found.add(self.fit(self.candidates(beside_line(&CORNERS))?, Start::Further)?);
-        }
+        let corners = if found.is_structured() && beside.has_spring() {
+            self.candidates(beside_line(&CORNERS))?
+        } else {
+            Vec::new()
+        };
         let allowed = of_speed.allowed(found, shown)?;
-        found.add(of_speed.fit(allowed, Start::of(shown, &[]))?);
-        if changes && found.changes() && !found.asks_for_more(tests) {
-            return Ok(());
-        }
-        let of_state = Run { options: &of_state, ..*self };
+        let [of_state, of_corners] = [&of_state, &of_corners].map(|options| Run { options, ..*self });
         let preslides = self.shows_presliding(tests);
-        if preslides || preslides_alone {
-            of_state.fit_presliding(found, plain.as_ref())?;
+        let with_state = || of_state.fit_presliding(Found::default(), plain.as_ref());
+        // No law of one group begins where one of another has ended. Where friction changes, a contact that yields may
+        // be asked for no more after that.
+        let is_next = preslides || preslides_alone;
+        let is_now = is_next && !changes;
+        let parts: [&(dyn Fn() -> Result<Found, IdentifyError> + Sync); 3] = [
+            &|| of_corners.fit(corners.clone(), Start::Further),
+            &|| of_speed.fit(allowed.clone(), Start::of(shown, &[])),
+            &|| if is_now { with_state() } else { Ok(Found::default()) },
+        ];
+        for part in on_all_threads(parts.to_vec(), |part| part()) {
+            found.add(part?);
+        }
+        if changes {
+            if found.changes() && !found.asks_for_more(tests) {
+                return Ok(());
+            }
+            if is_next {
+                found.add(with_state()?);
+            }
         }
         if preslides && found.is_structured() && !beside.is_empty() {
-            Run { beside: &beside, ..of_state }.fit_presliding(found, shown)?;
+            let earlier = std::mem::take(found);
+            *found = Run { beside: &beside, ..of_state }.fit_presliding(earlier, shown)?;
         }
         Ok(())
     }
@@ -379,8 +397,8 @@ impl Run<'_, '_> {
         tests.iter().any(is_seen)
     }
 
-    /// Adds fits by the laws with presliding, the further ones from where the first have ended.
-    fn fit_presliding(&self, found: &mut Found, shown: Option<&ShownFriction>) -> Result<(), IdentifyError> {
+    /// What was `found` with fits by the laws with presliding, the further ones from where the first have ended.
+    fn fit_presliding(&self, mut found: Found, shown: Option<&ShownFriction>) -> Result<Found, IdentifyError> {
         let first = self.candidates(self.inquiry.at(SearchStage::Presliding))?;
         found.add(self.fit(first, Start::of(shown, &[]))?);
         let further = self.candidates(self.inquiry.at(SearchStage::FurtherPresliding))?;
@@ -388,7 +406,7 @@ impl Run<'_, '_> {
         let nearest: Vec<&Fitted> = nearest.iter().map(|found| &found.fitted).collect();
         let further = self.fit(further, Start::of(shown, &nearest))?;
         found.add(further);
-        Ok(())
+        Ok(found)
     }
 
     /// The laws of the speed that the friction over the speed allows beside the best of them, and those that state

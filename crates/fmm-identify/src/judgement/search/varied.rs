@@ -1,6 +1,5 @@
 //! Fits of a search with friction that varies: during the records, or over the position.
 
-use fmm_fit::Options;
 use fmm_friction::{Coulomb, LawFamily};
 
 use super::{Found, Run};
@@ -32,7 +31,8 @@ impl Run<'_, '_> {
         let dry = found.identifications.iter().find(is_dry);
         let Some(base) = base(found).filter(is_shown).or(dry.filter(is_shown)) else { return Ok(()) };
         // A law that falls with the speed may have taken a part of the change: the simple law is asked as well.
-        let bases: Vec<Identification> = std::iter::once(base).chain(found.simple()).cloned().collect();
+        let simple = found.simple().filter(|simple| simple.law() != base.law());
+        let bases: Vec<Identification> = std::iter::once(base).chain(simple).cloned().collect();
         for base in &bases {
             let changed =
                 self.fit_change(found, base)?.filter(|changed| asks_for_change(changed, self.decays, ASKED_CHANGE));
@@ -51,15 +51,10 @@ impl Run<'_, '_> {
         let Some(base) = found.simple().filter(|_| !is_past(self.end)).filter(is_shown) else { return Ok(()) };
         let Some(candidate) = with_position(&Candidate::fitted(base)) else { return Ok(()) };
         let begin = Begin::Extended(&base.fitted);
-        let options = self.with_most(MOST_ITERATIONS_OF_CHANGE);
+        let options = self.limited(found, MOST_ITERATIONS_OF_CHANGE);
         let identifications = vec![self.inquiry.fit(&candidate, self.decays.into(), begin, &options, None)?];
         found.add(Found { candidates: vec![candidate], identifications, ..Found::default() });
         Ok(())
-    }
-
-    /// Options of a fit of so many iterations at most.
-    fn with_most(&self, most: usize) -> Options {
-        self.options.clone().with_max_iterations(most.min(self.options.max_iterations()))
     }
 
     /// Replaces the laws that are left by the same with friction that changes, where it is known how little it does.
@@ -83,7 +78,7 @@ impl Run<'_, '_> {
     fn fit_change(&self, found: &mut Found, base: &Identification) -> Result<Option<Identification>, IdentifyError> {
         let Some(candidate) = with_change(&Candidate::fitted(base)) else { return Ok(None) };
         let begin = Begin::Extended(&base.fitted);
-        let options = self.with_most(MOST_ITERATIONS_OF_CHANGE);
+        let options = self.limited(found, MOST_ITERATIONS_OF_CHANGE);
         let is_curved = candidate.terms.has(Term::CurvedChange);
         let end = self.end.filter(|_| is_curved);
         let changed = self.inquiry.fit(&candidate, self.decays.into(), begin, &options, end)?;
