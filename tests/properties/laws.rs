@@ -1,4 +1,5 @@
-//! Laws that are others in a limit are them to the last bit, and all keep the promises of their trait.
+//! Laws that become others in a limit give the same numbers there to the last bit, and all keep the promises of
+//! their trait.
 
 use fmm_friction::{
     BristleLaw, Coulomb, CoulombStatic, CoulombViscous, Dahl, LawFamily, PiecewiseLinearLaw, Regime, SlidingLaw,

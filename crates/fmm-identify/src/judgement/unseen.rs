@@ -22,8 +22,8 @@ pub struct Unseen {
     pub size: f64,
     /// Its standard uncertainty, in the same unit.
     pub uncertainty: f64,
-    /// Relative error of the level of friction over the size that is left out, in the inverse of its unit. Zero for a
-    /// law whose level is zero.
+    /// Relative error of the level of friction for each unit of the size that is left out, in the inverse of that unit.
+    /// Zero for a law whose level is zero.
     pub price: f64,
 }
 

@@ -30,8 +30,8 @@ impl Problem<'_> {
         value: f64,
         derivatives: &[f64],
     ) -> Result<(), EvaluationError> {
-        /// Amplitudes by which a relative change of one would move the motion. The phase of ten million periods moves
-        /// by as much.
+        /// Largest change of the motion, in amplitudes, for a parameter that is doubled (1). Origin: that of the phase
+        /// after ten million periods.
         const STEEP: f64 = 1e8;
         let most = STEEP * self.experiments[record].summary().amplitudes.0;
         if derivatives.iter().all(|derivative| (derivative * value).abs() <= most) {

@@ -232,7 +232,7 @@ struct UnseenDocument {
     uncertainty: f64,
     /// Largest size that would not show.
     largest_unseen: f64,
-    /// Relative error of the level of friction over the size.
+    /// Relative error of the level of friction for each unit of the size that is left out.
     price: f64,
 }
 
