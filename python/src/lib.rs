@@ -109,7 +109,6 @@ mod _core {
     /// Answer of the program to `arguments`, of which the first is its command, by `files` that are not on the disk and
     /// `laws` that are not in the catalogue. What a function of a law raised is raised again.
     #[pyfunction]
-    #[expect(clippy::needless_pass_by_value, reason = "arguments of Python are values")]
     fn answer(
         py: Python<'_>,
         arguments: Vec<OsString>,
