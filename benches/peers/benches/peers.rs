@@ -64,7 +64,7 @@ fn measure<L: SlidingLaw<f64>>(
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
     let mut errors = Vec::new();
-    let exact: Vec<Named<_>> = vec![("fmm_exact".to_owned(), Box::new(Exact::default()))];
+    let exact: Vec<Named<_>> = vec![("fmm_exact".to_owned(), Box::new(Exact))];
     measure(&mut criterion, ("coulomb", COULOMB), &coulomb(), exact, &mut errors);
     let of_tolerance = |engine: RungeKutta| -> Named<_> { (format!("fmm_{:e}", engine.tolerance()), Box::new(engine)) };
     let tolerances = TOLERANCES.map(|tolerance| RungeKutta::new(tolerance).expect("valid"));

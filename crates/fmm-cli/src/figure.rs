@@ -122,6 +122,7 @@ pub struct Panel {
     height: f64,
     /// Ends of the y axis, if it does not follow what is drawn.
     ends: Option<(f64, f64)>,
+    is_logarithmic: bool,
     cells: Option<Cells>,
     layers: Vec<Layer>,
 }
@@ -129,13 +130,28 @@ pub struct Panel {
 impl Panel {
     /// Empty axes, `height` pixels high.
     pub fn new(x_label: impl Into<String>, y_label: impl Into<String>, height: f64) -> Self {
-        Self { x_label: x_label.into(), y_label: y_label.into(), height, ends: None, cells: None, layers: Vec::new() }
+        Self {
+            x_label: x_label.into(),
+            y_label: y_label.into(),
+            height,
+            ends: None,
+            is_logarithmic: false,
+            cells: None,
+            layers: Vec::new(),
+        }
     }
 
     /// The same axes with the y axis from `low` to `high`.
     #[must_use]
     pub fn between(mut self, low: f64, high: f64) -> Self {
         self.ends = Some((low, high));
+        self
+    }
+
+    /// The same axes, both logarithmic, for positive coordinates.
+    #[must_use]
+    pub fn logarithmic(mut self) -> Self {
+        self.is_logarithmic = true;
         self
     }
 
@@ -177,6 +193,15 @@ impl Panel {
         let all = || shown.iter();
         let (x_low, x_high) = range(all().map(|point| point.0));
         let (y_low, y_high) = range(all().map(|point| point.1));
+        if self.is_logarithmic {
+            let beyond = |(low, high): (f64, f64), below: f64, above: f64| {
+                (low * (high / low).powf(-below), high * (high / low).powf(above))
+            };
+            let x = (&*self.x_label, beyond((x_low, x_high), 0.015, 0.015));
+            return framed(&self.plots(), x, (&self.y_label, beyond((y_low, y_high), 0.05, headroom)))
+                .with_log_scale()
+                .with_tick_format(TickFormat::Custom(Arc::new(|value: f64| value.to_string())));
+        }
         let (width, height) = (x_high - x_low, y_high - y_low);
         if let Some((low, high)) = self.ends {
             let x = (&*self.x_label, (x_low - 0.015 * width, x_high + 0.015 * width));
@@ -371,5 +396,17 @@ mod tests {
         };
         let first = panels();
         assert!(first == panels() && first.matches("id=\"kuva-clip-1\"").count() == 1);
+    }
+
+    #[test]
+    fn equal_ratios_are_equal_distances_on_logarithmic_axes() {
+        let panel = Panel::new("x", "y", 300.0).logarithmic().with(Role::Fitted, "", [(1.0, 0.1), (1000.0, 10.0)]);
+        let svg = drawn(&[panel]);
+        let place = |tick: &str| -> f64 {
+            let before = svg.split(&format!(">{tick}</text>")).next().unwrap();
+            before.rsplit("<text x=\"").next().unwrap().split('"').next().unwrap().parse().unwrap()
+        };
+        let decades = [place("10") - place("1"), place("100") - place("10"), place("1000") - place("100")];
+        assert!(decades.iter().all(|decade| (decade - decades[0]).abs() < 1.0 && *decade > 100.0), "{decades:?}");
     }
 }
