@@ -1,5 +1,5 @@
 //! Eigenvalues of the companion matrices behind a stabilisation diagram, and the Cholesky factor of its normal
-//! equations, by faer beside nalgebra in one run: the reason why `fmm-frf` takes faer for many modes.
+//! equations, by faer beside nalgebra in one run. `fmm-frf` takes nalgebra, which is in a build anyway.
 
 #[path = "../../common/ratio.rs"]
 mod ratio;

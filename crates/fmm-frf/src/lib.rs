@@ -71,7 +71,7 @@
 //!
 //! Both are off by default.
 //!
-//! * `modes`: many modes at once, by factorisations and eigenvalues of the crate faer.
+//! * `modes`: many modes at once, by factorisations and eigenvalues of the crate nalgebra.
 //! * `serde`: responses and oscillators are written and read, and checked as their constructors do; modes and resonances
 //!   are written.
 

@@ -1,8 +1,8 @@
 //! From the stable poles to the modes that the lines need.
 
-use faer::Mat;
 use fmm_fit::{Fit, Outcome};
 use fmm_record::Complex64;
+use nalgebra::DMatrix;
 
 use super::band::Band;
 use super::partial_fractions::{Basis, Lines, right_side};
@@ -90,9 +90,9 @@ fn scatter(band: &Band, lines: &Lines, poles: &[Complex64]) -> Vec<Weights> {
     let freedom = 2.0 * lines.len() as f64 - Lines::unknowns(poles.len()) as f64;
     let of = |channel| {
         let mut left = right_side(channel, None);
-        let projection = basis.project(left.as_ref());
+        let projection = basis.project(&left);
         basis.take_out(&mut left, &projection);
-        let variance = left.squared_norm_l2() / freedom.max(1.0);
+        let variance = left.norm_squared() / freedom.max(1.0);
         // Lines without noise leave rounding only.
         Weights::Equal(variance.sqrt().max(f64::EPSILON).recip())
     };
@@ -122,7 +122,7 @@ fn strengths(poles: &[Complex64], linear: &[Linear], variance: f64) -> Vec<f64> 
 }
 
 /// aᵀC⁻¹a of the two parts of a residue.
-fn squared_by(covariance: &Mat<f64>, mode: usize, re: f64, im: f64) -> f64 {
+fn squared_by(covariance: &DMatrix<f64>, mode: usize, re: f64, im: f64) -> f64 {
     let (i, j) = (2 * mode, 2 * mode + 1);
     let (a, b, c) = (covariance[(i, i)], covariance[(i, j)], covariance[(j, j)]);
     let determinant = a * c - b * b;
@@ -160,9 +160,9 @@ fn screen(band: &Band, lines: &Lines, candidates: &mut Vec<Complex64>, weights: 
                 Weights::Lines(weights) => Some(weights.as_slice()),
             };
             let mut left = right_side(channel, by_line);
-            let projection = basis.project(left.as_ref());
+            let projection = basis.project(&left);
             basis.take_out(&mut left, &projection);
-            sum += factor * factor * left.squared_norm_l2();
+            sum += factor * factor * left.norm_squared();
             let (unknowns, covariance) = (basis.solve(&projection), basis.covariance());
             for (mode, strength) in strengths.iter_mut().enumerate() {
                 let parts = (unknowns[(2 * mode, 0)], unknowns[(2 * mode + 1, 0)]);

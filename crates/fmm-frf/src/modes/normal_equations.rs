@@ -3,9 +3,8 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use faer::linalg::solvers::Llt;
-use faer::{Mat, MatRef, Side, c64};
 use fmm_record::Complex64;
+use nalgebra::{Cholesky, DMatrix, Schur};
 
 use super::band::Band;
 use super::table::Table;
@@ -17,6 +16,8 @@ const COVERED: f64 = 0.75;
 /// Shares of the mean diagonal added to it, one after the other, until the matrix is definite: without noise an order
 /// above that of the structure makes it singular.
 const RIDGES: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-8];
+/// Steps of the iteration for eigenvalues at most, for each of them. Origin: that of LAPACK (dlahqr).
+const STEPS: usize = 30;
 
 /// Denominators of the orders 1 to N of a right matrix fraction, from one factorisation.
 ///
@@ -39,7 +40,8 @@ const RIDGES: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-8];
 /// and the discrimination capability of the stabilisation diagrams", Mechanical Systems and Signal Processing 19 (2005)
 /// 989.
 pub(super) struct Denominators {
-    factor: Llt<c64>,
+    /// L of the Cholesky factorisation.
+    factor: DMatrix<Complex64>,
     references: usize,
     order: usize,
     centre: Complex64,
@@ -58,12 +60,12 @@ impl Denominators {
         let powers = Powers::new(frequencies.iter().map(|frequency| -TAU * (frequency - middle) * period));
         // R, of the numerator alone; it is that of all responses.
         let lags = powers.sums(order, |_| Complex64::ONE);
-        let numerator = Mat::<c64>::from_fn(size, size, |j, k| lags[order + k - j]);
+        let numerator = DMatrix::<Complex64>::from_fn(size, size, |j, k| lags[order + k - j]);
         let numerator = definite(numerator)?;
-        let mut normal = Mat::<c64>::zeros(size * references, size * references);
+        let mut normal = DMatrix::<Complex64>::zeros(size * references, size * references);
         for row in table {
             let values = |reference: usize| &band.channels[row[reference]].values[lines.clone()];
-            let mut mixed = Mat::<c64>::zeros(size, size * references);
+            let mut mixed = DMatrix::<Complex64>::zeros(size, size * references);
             for one in 0..references {
                 let lags = powers.sums(order, |line| -values(one)[line]);
                 for k in 0..size {
@@ -80,8 +82,8 @@ impl Denominators {
                     }
                 }
             }
-            numerator.L().solve_lower_triangular_in_place(mixed.as_mut());
-            normal -= mixed.adjoint() * &mixed;
+            numerator.solve_lower_triangular_mut(&mut mixed);
+            normal -= mixed.ad_mul(&mixed);
         }
         let centre = Complex64::new(band.decay_rate, TAU * middle);
         Ok(Self { factor: definite(normal)?, references, order, centre, period })
@@ -95,12 +97,11 @@ impl Denominators {
     /// Poles (rad/s) of the denominator of `order`, of those that are finite.
     pub(super) fn poles(&self, order: usize) -> Vec<Complex64> {
         let (size, references) = (order * self.references, self.references);
-        let lower = self.factor.L();
         // M₁₁ X = −M₁₂ with M₁₁ = L₁₁L₁₁ᴴ and M₁₂ = L₁₁L₂₁ᴴ.
-        let mut coefficients = lower.submatrix(size, 0, references, size).adjoint().to_owned();
-        lower.submatrix(0, 0, size, size).adjoint().solve_upper_triangular_in_place(coefficients.as_mut());
+        let mut coefficients = self.factor.view((size, 0), (references, size)).adjoint();
+        self.factor.view((0, 0), (size, size)).ad_solve_lower_triangular_mut(&mut coefficients);
         // The companion of zⁿ + A_{n−1} zⁿ⁻¹ + … + A₀; the signs of X and of the companion cancel.
-        let companion = Mat::<c64>::from_fn(size, size, |row, column| {
+        let companion = DMatrix::<Complex64>::from_fn(size, size, |row, column| {
             if row < references {
                 let block = order - 1 - column / references;
                 coefficients[(block * references + row, column % references)]
@@ -110,7 +111,7 @@ impl Denominators {
                 Complex64::ZERO
             }
         });
-        let zeros = eigenvalues(companion.as_ref());
+        let zeros = eigenvalues(companion);
         let pole = |z: &Complex64| {
             let angle = z.arg();
             // The gap between the ends of the band is no place for a pole.
@@ -120,13 +121,15 @@ impl Denominators {
     }
 }
 
-fn eigenvalues(matrix: MatRef<'_, c64>) -> Vec<Complex64> {
+fn eigenvalues(matrix: DMatrix<Complex64>) -> Vec<Complex64> {
     // An iteration that does not end leaves the order without poles.
-    matrix.eigenvalues().unwrap_or_default()
+    let most = STEPS * matrix.nrows();
+    let schur = Schur::try_new(matrix, f64::EPSILON, most);
+    schur.and_then(|schur| schur.eigenvalues()).map_or_else(Vec::new, |zeros| zeros.iter().copied().collect())
 }
 
 /// The Cholesky factor of a matrix that is definite but for rounding.
-fn definite(matrix: Mat<c64>) -> Result<Llt<c64>, FrfError> {
+fn definite(matrix: DMatrix<Complex64>) -> Result<DMatrix<Complex64>, FrfError> {
     let size = matrix.nrows();
     let mean = (0..size).map(|i| matrix[(i, i)].re).sum::<f64>() / size as f64;
     let mut matrix = matrix;
@@ -134,7 +137,9 @@ fn definite(matrix: Mat<c64>) -> Result<Llt<c64>, FrfError> {
         for i in 0..size {
             matrix[(i, i)] += ridge * mean;
         }
-        if let Ok(factor) = matrix.llt(Side::Lower) {
+        // nalgebra takes the complex root of a pivot that is negative.
+        let factor = matrix.clone().cholesky().map(Cholesky::unpack);
+        if let Some(factor) = factor.filter(|lower| lower.diagonal().iter().all(|pivot| pivot.re > pivot.im.abs())) {
             return Ok(factor);
         }
     }

@@ -1,7 +1,7 @@
 //! Least squares frequency domain method: residues of known poles, and what other modes leave in the band.
 
-use faer::{Mat, MatRef};
 use fmm_record::Complex64;
+use nalgebra::DMatrix;
 
 use super::band::{Band, Channel};
 
@@ -18,9 +18,9 @@ const REST: usize = 4;
 /// are one factorisation.
 pub(super) struct Basis {
     /// Q, orthonormal columns.
-    orthonormal: Mat<f64>,
+    orthonormal: DMatrix<f64>,
     /// R, upper triangle.
-    triangle: Mat<f64>,
+    triangle: DMatrix<f64>,
 }
 
 /// s of each line, and what depends on it alone.
@@ -78,7 +78,7 @@ impl Basis {
     /// With the `weights` of the lines, 1 without any.
     pub(super) fn of(lines: &Lines, poles: &[Complex64], weights: Option<&[f64]>) -> Self {
         let count = lines.len();
-        let mut columns = Mat::zeros(2 * count, Lines::unknowns(poles.len()));
+        let mut columns = DMatrix::zeros(2 * count, Lines::unknowns(poles.len()));
         for line in 0..count {
             let weight = weights.map_or(1.0, |weights| weights[line]);
             for (column, value) in lines.row(line, poles).enumerate() {
@@ -86,8 +86,8 @@ impl Basis {
                 columns[(count + line, column)] = weight * value.im;
             }
         }
-        let factors = columns.qr();
-        Self { orthonormal: factors.compute_thin_Q(), triangle: factors.thin_R().to_owned() }
+        let (orthonormal, triangle) = columns.qr().unpack();
+        Self { orthonormal, triangle }
     }
 
     /// True unless two columns are the same but for rounding, as they are for two equal poles.
@@ -99,34 +99,35 @@ impl Basis {
     }
 
     /// Qᵀ times the columns of `right`.
-    pub(super) fn project(&self, right: MatRef<'_, f64>) -> Mat<f64> {
+    pub(super) fn project(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        // Not `tr_mul`, which goes column by column without the kernel of this product.
         self.orthonormal.transpose() * right
     }
 
     /// Takes out of `right` what the columns can be made of, of which `projection` is [`Basis::project`].
-    pub(super) fn take_out(&self, right: &mut Mat<f64>, projection: &Mat<f64>) {
-        *right -= &self.orthonormal * projection;
+    pub(super) fn take_out(&self, right: &mut DMatrix<f64>, projection: &DMatrix<f64>) {
+        right.gemm(-1.0, &self.orthonormal, projection, 1.0);
     }
 
     /// R⁻¹ times the columns of a projection: the unknowns.
-    pub(super) fn solve(&self, projection: &Mat<f64>) -> Mat<f64> {
-        let mut unknowns = projection.to_owned();
-        self.triangle.solve_upper_triangular_in_place(unknowns.as_mut());
+    pub(super) fn solve(&self, projection: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut unknowns = projection.clone();
+        self.triangle.solve_upper_triangular_mut(&mut unknowns);
         unknowns
     }
 
     /// (RᵀR)⁻¹, covariance of the unknowns for known poles and residuals of unit variance.
-    pub(super) fn covariance(&self) -> Mat<f64> {
+    pub(super) fn covariance(&self) -> DMatrix<f64> {
         let size = self.triangle.ncols();
-        let inverse = self.solve(&Mat::identity(size, size));
+        let inverse = self.solve(&DMatrix::identity(size, size));
         &inverse * inverse.transpose()
     }
 }
 
 /// Real parts above imaginary parts of the values of a channel, times the weights of its lines.
-pub(super) fn right_side(channel: &Channel, weights: Option<&[f64]>) -> Mat<f64> {
+pub(super) fn right_side(channel: &Channel, weights: Option<&[f64]>) -> DMatrix<f64> {
     let count = channel.values.len();
-    Mat::from_fn(2 * count, 1, |row, _| {
+    DMatrix::from_fn(2 * count, 1, |row, _| {
         let line = row % count;
         let value = channel.values[line];
         weights.map_or(1.0, |weights| weights[line]) * if row < count { value.re } else { value.im }

@@ -1,9 +1,9 @@
 //! Poles that leave least of all lines, by variable projection.
 
-use faer::Mat;
 use fmm_fit::{Derivatives, EvaluationError, Fit, Options, Residuals, solve};
 use fmm_model::{Bounds, Parameter};
 use fmm_record::Complex64;
+use nalgebra::DMatrix;
 
 use super::band::Band;
 use super::partial_fractions::{Basis, Lines, right_side};
@@ -65,7 +65,7 @@ pub(super) struct Linear {
     /// Real unknowns, in the order of [`Lines`].
     pub(super) unknowns: Vec<f64>,
     /// Their covariance for residuals of unit variance, that of the poles included.
-    pub(super) covariance: Mat<f64>,
+    pub(super) covariance: DMatrix<f64>,
 }
 
 impl<'a> Refinement<'a> {
@@ -117,9 +117,9 @@ impl<'a> Refinement<'a> {
     }
 
     /// Slopes of the model of a response by all parameters, weighted as its lines are but for the common factor.
-    fn slopes(&self, index: usize, poles: &[Complex64], unknowns: &[f64]) -> Mat<f64> {
+    fn slopes(&self, index: usize, poles: &[Complex64], unknowns: &[f64]) -> DMatrix<f64> {
         let count = self.lines.len();
-        let mut slopes = Mat::zeros(2 * count, 2 * poles.len());
+        let mut slopes = DMatrix::zeros(2 * count, 2 * poles.len());
         for (mode, pole) in poles.iter().enumerate() {
             let residue = Complex64::new(unknowns[2 * mode], unknowns[2 * mode + 1]);
             for line in 0..count {
@@ -138,17 +138,16 @@ impl<'a> Refinement<'a> {
         let poles = poles(fit.values());
         let size = fit.values().len();
         // A pole that the lines do not determine has none; whoever asks the fit for it knows.
-        let covariance = Mat::from_fn(size, size, |i, j| fit.unit_covariance(i, j).unwrap_or(0.0));
+        let covariance = DMatrix::from_fn(size, size, |i, j| fit.unit_covariance(i, j).unwrap_or(0.0));
         let mut found = Vec::with_capacity(self.weights.len());
         self.for_each_basis(&poles, |index, basis| {
             let right = right_side(&self.band.channels[index], self.weights[index].lines());
-            let unknowns = basis.solve(&basis.project(right.as_ref()));
+            let unknowns = basis.solve(&basis.project(&right));
             let unknowns: Vec<f64> = (0..unknowns.nrows()).map(|i| unknowns[(i, 0)]).collect();
             let slopes = self.slopes(index, &poles, &unknowns);
-            let influence = basis.solve(&basis.project(slopes.as_ref()));
+            let influence = basis.solve(&basis.project(&slopes));
             let factor = self.weights[index].factor().powi(-2);
-            let covariance =
-                basis.covariance() * faer::Scale(factor) + &influence * &covariance * influence.transpose();
+            let covariance = basis.covariance() * factor + &influence * &covariance * influence.transpose();
             found.push(Linear { unknowns, covariance });
         })?;
         Some(found)
@@ -175,7 +174,7 @@ impl Residuals for Refinement<'_> {
         let done = self.for_each_basis(&poles, |index, basis| {
             let factor = self.weights[index].factor();
             let mut left = right_side(&self.band.channels[index], self.weights[index].lines());
-            let projection = basis.project(left.as_ref());
+            let projection = basis.project(&left);
             basis.take_out(&mut left, &projection);
             let range = index * rows..(index + 1) * rows;
             for (row, residual) in residuals[range.clone()].iter_mut().enumerate() {
@@ -185,7 +184,7 @@ impl Residuals for Refinement<'_> {
                 let unknowns = basis.solve(&projection);
                 let unknowns: Vec<f64> = (0..unknowns.nrows()).map(|i| unknowns[(i, 0)]).collect();
                 let mut slopes = self.slopes(index, &poles, &unknowns);
-                let projection = basis.project(slopes.as_ref());
+                let projection = basis.project(&slopes);
                 basis.take_out(&mut slopes, &projection);
                 for (column, values) in jacobian.chunks_exact_mut(total).enumerate() {
                     for (row, value) in values[range.clone()].iter_mut().enumerate() {
