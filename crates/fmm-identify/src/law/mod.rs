@@ -42,7 +42,12 @@ pub(crate) struct Motion<D> {
 impl<D: Scalar> Motion<D> {
     /// The scenario of it by a `law` of its values.
     fn scenario<L>(&self, law: L) -> Result<Scenario<D, L>, EvaluationError> {
-        let scenario = Scenario::new(self.oscillator, law, self.normal_load)?;
+        Ok(self.without_law()?.with_law(law))
+    }
+
+    /// All of the scenario but its law, compiled once for all laws.
+    fn without_law(&self) -> Result<Scenario<D, ()>, EvaluationError> {
+        let scenario = Scenario::new(self.oscillator, (), self.normal_load)?;
         let scenario = match &self.change {
             Some((interval, factors)) => {
                 let loads: Vec<D> = factors.iter().map(|factor| self.normal_load * *factor).collect();

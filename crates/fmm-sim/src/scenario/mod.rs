@@ -84,6 +84,13 @@ impl<D: Scalar, L> Scenario<D, L> {
         })
     }
 
+    /// The scenario with another `law`, whose states are zero at t = 0.
+    pub fn with_law<M>(self, law: M) -> Scenario<D, M> {
+        let Self { oscillator, normal_load, sampled_load, load_over_position, initial, excitations, .. } = self;
+        let deflections = Vec::new();
+        Scenario { oscillator, normal_load, sampled_load, load_over_position, initial, deflections, excitations, law }
+    }
+
     /// The scenario with this initial `position` (m) and `velocity` (m/s).
     ///
     /// # Errors
@@ -334,6 +341,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn another_law_changes_the_law_and_its_states_alone() {
+        let of = |law| Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), law, 5.0).unwrap();
+        let begin =
+            |scenario: Scenario<f64, Dahl>| scenario.under_curved_load(2.0).unwrap().starting_at(0.1, 0.2).unwrap();
+        let (one, other) = (Dahl::new(0.2, 50.0, 1.0).unwrap(), Dahl::new(0.3, 60.0, 1.0).unwrap());
+        let bent = begin(of(one)).with_deflection(0, 1e-4).unwrap();
+        assert_eq!(bent.with_law(other), begin(of(other)));
     }
 
     #[test]
