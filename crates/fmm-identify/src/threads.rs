@@ -9,10 +9,21 @@ use rayon::prelude::*;
 /// Results of `work` on each of `items`, in their order. With the feature `rayon` it goes on all threads of the current
 /// pool.
 pub(crate) fn on_all_threads<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
+    let places: Vec<_> = items.into_iter().map(|item| Mutex::new((Some(item), None))).collect();
+    for_each(places.len(), &|index| {
+        let mut place = places[index].lock().unwrap_or_else(PoisonError::into_inner);
+        place.1 = place.0.take().map(&work);
+    });
+    let result = |place: Mutex<(_, Option<R>)>| place.into_inner().unwrap_or_else(PoisonError::into_inner).1;
+    places.into_iter().filter_map(result).collect()
+}
+
+/// Work on each of so many pieces, compiled once for all kinds of them.
+fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     #[cfg(feature = "rayon")]
-    return items.into_par_iter().with_max_len(1).map(work).collect();
+    (0..count).into_par_iter().with_max_len(1).for_each(work);
     #[cfg(not(feature = "rayon"))]
-    items.into_iter().map(work).collect()
+    (0..count).for_each(work);
 }
 
 /// True from the `end` on.
