@@ -16,15 +16,14 @@ use faer::{Mat, Par};
 use ratio::print_ratio;
 
 // The factorisation is no public item; its files need nothing else of their crate.
-#[path = "../../../crates/fmm-fit/src/solver"]
+#[path = "../../../crates/fmm-fit/src/algebra"]
 #[allow(dead_code, unused_imports, reason = "only the factorisation is measured, and its tests do not run here")]
-mod solver {
+mod algebra {
     pub(crate) mod sums;
     pub(crate) mod triangle;
-    mod wide;
 }
 
-use solver::triangle::Triangle;
+use algebra::triangle::Triangle;
 
 /// Columns of derivatives and one of residuals, as a decaying oscillation has them.
 fn columns(rows: usize, parameters: usize) -> Vec<f64> {

@@ -16,35 +16,30 @@ use rand_distr::{Distribution, StandardNormal, StudentT};
 use ratio::print_ratio;
 
 // What is measured is no public item; these files need nothing else of their crates.
-#[path = "../../../crates/fmm-fit/src/solver"]
+#[path = "../../../crates/fmm-fit/src/algebra"]
 #[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
-mod solver {
+mod algebra {
+    pub(crate) mod definite;
     pub(crate) mod spectrum;
     pub(crate) mod sums;
     pub(crate) mod triangle;
-    mod wide;
 }
-#[path = "../../../crates/fmm-fit/src/uncertainty/definite.rs"]
-#[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
-mod definite;
 #[path = "../../../crates/fmm-sim/src/bristle/lu.rs"]
 #[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
 mod lu;
 #[path = "../../../crates/fmm-uq/src/distributions"]
 #[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
 mod distributions {
-    pub(crate) mod student;
-}
-#[path = "../../../crates/fmm-uq/src/random"]
-#[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
-mod random {
-    pub(crate) mod stream;
     pub(crate) mod ziggurat;
 }
+#[path = "../../../crates/fmm-uq/src/stream.rs"]
+#[allow(dead_code, unused_imports, reason = "only parts are measured, and their tests do not run here")]
+mod stream;
 
-use random::ziggurat::Ziggurat;
-use solver::spectrum::Spectrum;
-use solver::triangle::Triangle;
+use algebra::definite;
+use algebra::spectrum::Spectrum;
+use algebra::triangle::Triangle;
+use distributions::ziggurat::Ziggurat;
 
 const VALUES: usize = 10_000;
 
