@@ -104,13 +104,7 @@ impl CurveFit {
         let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments, end)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            let few = Settled::of(
-                &problem.with_records(&thinned).simulated_roughly(),
-                values,
-                scale,
-                (MOST_STEPS, 0.0),
-                end,
-            )?;
+            let few = Settled::of(&problem.with_records(&thinned).simulated_roughly(), values, scale, MOST_STEPS, end)?;
             // What does not settle with few samples does not with all of them.
             if !few.has_ended {
                 return Err(not_settled());
@@ -118,7 +112,7 @@ impl CurveFit {
             values = few.values;
         }
         let Settled { values, near, likelihood, posterior, has_ended } =
-            Settled::of(problem, values, scale, (MOST_STEPS, 0.0), end)?;
+            Settled::of(problem, values, scale, MOST_STEPS, end)?;
         // The intervals hold near the curve about which the record was linearised, and nowhere else.
         if !has_ended {
             return Err(not_settled());
@@ -155,18 +149,17 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    /// Linearises `problem` from these `values` on until the mean of the posterior stays, or the sum of squares within
-    /// `enough` variances of independent residuals, at `most` so often and before the `end`, first for white noise, then
-    /// for that of the residuals.
+    /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often and before
+    /// the `end`, first for white noise, then for that of the residuals.
     pub(super) fn of(
         problem: &Problem<'_>,
         mut values: Vec<f64>,
         scale: f64,
-        (most, enough): (usize, f64),
+        most: usize,
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
-        let (mut last, mut least, mut above) = (f64::INFINITY, f64::INFINITY, 0);
+        let (mut least, mut above) = (f64::INFINITY, 0);
         let levels = problem.table.law..problem.table.law + LEVELS;
         let (prior, mut noise, mut steps) = (Prior::new(), None, 0);
         loop {
@@ -181,12 +174,10 @@ impl Settled {
                 step.iter().zip(deviations).all(|(step, deviation)| step.abs() <= SETTLED * scale * deviation)
             };
             let mut has_ended = is_near(&posterior);
-            let fall = (last - near.sum_of_squares()).abs();
-            let stays = fall < enough * likelihood.variance * near.correlation().max(1.0);
-            last = near.sum_of_squares();
-            least = least.min(last);
-            above = if last > ASTRAY * least { above + 1 } else { 0 };
-            if (has_ended || stays) && noise.is_none() {
+            let squares = near.sum_of_squares();
+            least = least.min(squares);
+            above = if squares > ASTRAY * least { above + 1 } else { 0 };
+            if has_ended && noise.is_none() {
                 noise = near.noise(problem, &values);
                 if noise.is_some() {
                     (likelihood, posterior) = near.posterior(problem, &values, scale, &prior, noise.as_ref())?;
@@ -195,7 +186,7 @@ impl Settled {
             }
             steps += 1;
             let step = likelihood.step(&step_of_levels(&posterior, &values[levels.clone()], scale));
-            let is_last = has_ended || stays || steps > most || above == MOST_ASTRAY;
+            let is_last = has_ended || steps > most || above == MOST_ASTRAY;
             match (!is_last).then(|| moved(problem, &near, &values, &step, likelihood.variance)).flatten() {
                 Some(moved) => values = moved,
                 None => return Ok(Self { values, near, likelihood, posterior, has_ended }),

@@ -74,7 +74,7 @@ impl ShownFriction {
         let Levelled { problem, values, top, scale, line, line_squares } =
             Levelled::of(machine, &terms, experiments, end)?;
         let problem = problem.simulated_roughly();
-        let settled = Settled::of(&problem, values, scale, (MOST_STEPS_OF_PROJECTION, EVEN), end)?;
+        let settled = Settled::of(&problem, values, scale, MOST_STEPS_OF_PROJECTION, end)?;
         let squares = line_squares.min(settled.near.sum_of_squares());
         let is_structured = settled.near.excess(&problem).is_some();
         let eigen = settled.likelihood.precision.clone().symmetric_eigen();

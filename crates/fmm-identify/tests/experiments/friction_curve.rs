@@ -1,13 +1,15 @@
 //! Friction over speed without a law, from records whose curve is known.
 
-use fmm_friction::CoulombViscous;
-use fmm_identify::{Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation};
+use fmm_friction::{CoulombViscous, LawFamily, RegularisedStribeck};
+use fmm_identify::{Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
+
+use crate::simulated::{INTERVAL, Motion, machine, record};
 
 /// Velocity (m/s) of 2 Hz, F/m = 0.3 m/s² and c/m of this `damping` (1/s), released at 20 mm, at `rate` (Hz), noise
 /// left out.
@@ -183,4 +185,37 @@ fn runs_under_other_loads_are_refused() {
     let other = one.clone().with_load_factor(2.0).unwrap();
     let error = FrictionCurve::of(&Machine::per_unit_mass(), &[one, other]).unwrap_err();
     assert!(error.to_string().contains("under one load"), "{error}");
+}
+
+/// A curve is not smooth where a law rises within its first levels: such a law is fitted all the same, and wins where it
+/// is true.
+#[test]
+fn a_law_that_rises_within_the_first_levels_is_not_excluded() {
+    let law = [0.3, 0.2, 0.01, 0.02];
+    let initial = (0.022, 0.0);
+    let motion =
+        Motion { damping: 0.0, law: &law, load: LOAD, initial, force: None, samples: 3000, interval: INTERVAL };
+    let velocity = motion.of::<RegularisedStribeck>().velocity().values().to_vec();
+    for seed in 0..3 {
+        let record = record(&velocity, 1e-3, seed, Quantity::Velocity, "m/s");
+        let found = search(&machine(), &[Experiment::ring_down(&record, &Preparation::default()).unwrap()]).unwrap();
+        assert_eq!(found.preferred().law(), RegularisedStribeck::NAME, "{found}");
+    }
+}
+
+/// A long record of many half cycles tells more of the friction than a rough simulation: its curve settles all the same.
+#[test]
+fn the_curve_of_a_long_record_settles() {
+    let rate = 45_000.0;
+    let law = CoulombViscous::new(0.0142, 0.0377).unwrap();
+    let scenario = Scenario::new(Oscillator::per_unit_mass(3.0).unwrap(), law, 1.0).unwrap();
+    let sampling = Sampling::uniform(1.0 / rate, 300_000).unwrap();
+    let motion = Exact.run(&scenario.starting_at(0.02, 0.0).unwrap(), &sampling).unwrap();
+    for seed in 0..3 {
+        let curve = curve(noisy(motion.velocity().values(), 4e-5, seed), rate);
+        assert!(curve.limits().is_empty(), "{curve}");
+        let mean = curve.mean_over_path();
+        assert!(mean.uncertainty() < 6e-6 * mean.value(), "{curve}");
+        require_within(&curve.at_rest(), 0.0142, 2.6);
+    }
 }
