@@ -44,7 +44,7 @@ impl fmt::Display for FrictionCurve {
             let both = Rounded::new(level.value(), Some(level.uncertainty())).interval(low, high);
             writeln!(f, "  {speed:>10.4e} {}  {level}  {both}", self.speed_unit())?;
         }
-        writeln!(f, "  samples down to {:.3e} {}", self.slowest(), self.speed_unit())?;
+        writeln!(f, "  samples down to {} {}", Rounded::significant(self.slowest(), 4), self.speed_unit())?;
         self.limits().iter().try_for_each(|limit| writeln!(f, "  {limit}"))
     }
 }

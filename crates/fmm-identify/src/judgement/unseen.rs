@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use fmm_model::Rounded;
+
 use crate::candidate::Candidate;
 use crate::experiment::{Experiment, reference};
 use crate::identification::Identification;
@@ -134,7 +136,7 @@ impl fmt::Display for Unseen {
         match self.kind {
             Kind::Change => write!(f, "a change of {:.2} % with each half cycle", percent(unseen))?,
             Kind::OverPosition => write!(f, "{:.1} % more at the largest deflection", percent(unseen))?,
-            Kind::Damping => write!(f, "{unseen:.1e} 1/s")?,
+            Kind::Damping => write!(f, "{} 1/s", Rounded::significant(unseen, 2))?,
         }
         f.write_str(" would not show")?;
         if moved > 0.0 {

@@ -359,12 +359,6 @@ pub enum Warning {
     },
 }
 
-/// Three digits of a value, without an exponent where it needs none.
-fn to_three_digits(value: f64) -> String {
-    let rounded = format!("{value:.2e}").parse().unwrap_or(value);
-    Rounded::new(rounded, None).to_string()
-}
-
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -382,9 +376,11 @@ impl fmt::Display for Warning {
             }
             Self::StructuredResiduals { residual, noise, unit, inflation } => write!(
                 f,
-                "the residuals are structured, not noise: {residual:.3e} {unit} rms against {noise:.1e} {unit} of \
-                 noise between samples, and neighbours are alike; the law leaves something out, and the standard \
-                 uncertainties take it for noise{}",
+                "the residuals are structured, not noise: {} {unit} rms against {} {unit} of noise between samples, \
+                 and neighbours are alike; the law leaves something out, and the standard uncertainties take it for \
+                 noise{}",
+                Rounded::significant(*residual, 4),
+                Rounded::significant(*noise, 2),
                 if *inflation > 1.05 {
                     format!(", {inflation:.1} times as large as if it were white")
                 } else {
@@ -414,7 +410,8 @@ impl fmt::Display for Warning {
             Self::OffsetStep { time, height, unit } => {
                 write!(
                     f,
-                    "the offset jumps by {height:.3e} {unit} near {time:.3} s; fit the parts before and after apart"
+                    "the offset jumps by {} {unit} near {time:.3} s; fit the parts before and after apart",
+                    Rounded::significant(*height, 4)
                 )
             }
             Self::Spikes { count } => write!(f, "{count} isolated samples far off their neighbours were left out"),
@@ -454,8 +451,8 @@ impl fmt::Display for Warning {
                 "{law} alone would have put the friction at rest at {} in place of the {} of the preferred law: with \
                  friction that changes with speed, a level and a straight line share the losses of large swings and \
                  miss those of small ones (its residuals are {residuals:.1} times larger)",
-                to_three_digits(*friction),
-                to_three_digits(*preferred)
+                Rounded::significant(*friction, 3),
+                Rounded::significant(*preferred, 3)
             ),
             Self::FurtherHit { .. }
             | Self::Overload { .. }

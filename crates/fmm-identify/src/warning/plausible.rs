@@ -1,6 +1,8 @@
 //! Results that no machine has, and the units that would make them plausible.
 
-use crate::warning::{Warning, to_three_digits};
+use fmm_model::Rounded;
+
+use crate::warning::Warning;
 
 /// Largest coefficient of friction that is believed (1). Dry contacts of tables reach 1.5 (rubber on concrete 0.6 to
 /// 1.0, aluminium on aluminium 1.05 to 1.35; Avallone and Baumeister, Marks' Standard Handbook, table 3.2.1), clean
@@ -42,12 +44,12 @@ impl Warning {
                 Some((unit, seconds)) => {
                     format!(
                         "if its times are in {unit}, it has {} Hz; say their unit",
-                        to_three_digits(frequency / seconds)
+                        Rounded::significant(frequency / seconds, 3)
                     )
                 }
                 None => "look at the unit of its times, or at the rate".to_owned(),
             };
-            return Some(Self::Implausible { number: format!("{} Hz", to_three_digits(frequency)), remedy });
+            return Some(Self::Implausible { number: format!("{} Hz", Rounded::significant(frequency, 3)), remedy });
         }
         let mu = mu.filter(|mu| *mu > LARGEST_MU)?;
         let weight = mass.map(|mass| GRAVITY * mass);
@@ -57,18 +59,18 @@ impl Warning {
         let unit = unit.map(|(unit, factor)| {
             format!(
                 "if its numbers are {unit} of the unit that they were read in, mu is {}",
-                to_three_digits(factor * mu)
+                Rounded::significant(factor * mu, 3)
             )
         });
         let load = small.map(|(load, weight)| {
-            let [load, weight] = [load, weight].map(to_three_digits);
+            let [load, weight] = [load, weight].map(|force| Rounded::significant(force, 3));
             format!(
                 "the normal load of {load} N is little beside the weight of {weight} N that moves: look at both units"
             )
         });
         let remedy: Vec<String> = unit.into_iter().chain(load).collect();
         let remedy = if remedy.is_empty() { "look at the units".to_owned() } else { remedy.join("; ") };
-        Some(Self::Implausible { number: format!("mu = {}", to_three_digits(mu)), remedy })
+        Some(Self::Implausible { number: format!("mu = {}", Rounded::significant(mu, 3)), remedy })
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fmm_model::Rounded;
 
-use crate::warning::{Warning, to_three_digits};
+use crate::warning::Warning;
 
 /// Factor of the uncertainties that is worth a word (1).
 const NOTABLE: f64 = 1.1;
@@ -69,14 +69,15 @@ impl Warning {
             ),
             Self::Hum { frequency, amplitude, unit } => write!(
                 f,
-                "a hum of {amplitude:.2e} {unit} at {frequency:.3} Hz goes on through the record; it was fitted beside \
-                 the motion"
+                "a hum of {} {unit} at {frequency:.3} Hz goes on through the record; it was fitted beside the motion",
+                Rounded::significant(*amplitude, 3)
             ),
             Self::Rounded { step, unit } => write!(
                 f,
-                "the values are rounded to steps of {step:.2e} {unit}, which is more than their noise; what follows \
-                 the last turning point of a swing, or the last step of a position that comes to rest, was left out, \
-                 as what moves within a step is rounded to another motion"
+                "the values are rounded to steps of {} {unit}, which is more than their noise; what follows the last \
+                 turning point of a swing, or the last step of a position that comes to rest, was left out, as what \
+                 moves within a step is rounded to another motion",
+                Rounded::significant(*step, 3)
             ),
             Self::Drift => write!(
                 f,
@@ -89,8 +90,9 @@ impl Warning {
             ),
             Self::GrowingNoise { floor, share, unit } => write!(
                 f,
-                "the noise grows with the signal, from {floor:.1e} {unit} by {:.1} % of it; the standard uncertainties \
-                 take that into account",
+                "the noise grows with the signal, from {} {unit} by {:.1} % of it; the standard uncertainties take \
+                 that into account",
+                Rounded::significant(*floor, 2),
                 100.0 * share
             ),
             Self::ColouredNoise { is_correlated, time, ratio, inflation } => {
@@ -165,7 +167,7 @@ impl Warning {
                 "the force drives the motion: turn its sign (`--turn-sign` of `fmm force`, \
                  `ForceRecord::with_turned_sign`); in the mean of the way friction would be {} {unit}, and no friction \
                  is negative",
-                to_three_digits(*friction)
+                Rounded::significant(*friction, 3)
             ),
             Self::WorseThanNone { law, share, is_fitted } => {
                 let (said, remedy) = if *is_fitted {
@@ -176,7 +178,7 @@ impl Warning {
                 write!(
                     f,
                     "{law} {said} with an error of {} % of the force, which is no better than none: {remedy}",
-                    to_three_digits(100.0 * share)
+                    Rounded::significant(100.0 * share, 3)
                 )
             }
             Self::NoisyMotion { quantity, share, samples, parameters } => write!(
@@ -184,7 +186,11 @@ impl Warning {
                 "the measured {quantity} has noise of {} of its deviation, which was averaged over {samples} samples; \
                  what is left of it, and what averaging takes from the motion, is most of the uncertainty of \
                  {parameters}",
-                if *share < 1e-4 { format!("{share:.0e}") } else { format!("{} %", to_three_digits(100.0 * share)) }
+                if *share < 1e-4 {
+                    format!("{share:.0e}")
+                } else {
+                    format!("{} %", Rounded::significant(100.0 * share, 3))
+                }
             ),
             Self::CoarseMotion { parameters } => write!(
                 f,
