@@ -85,7 +85,7 @@ impl Plan {
             known = known.with_known(place, 1.0).map_err(failed)?;
         }
         for (place, parameter) in guess.parameters.iter().enumerate().filter(|(_, one)| one.bounds().is_fixed()) {
-            /// Standard uncertainty of a fixed value over the value (1): nothing, but for rounding.
+            /// Standard uncertainty of a fixed value over the value (1). Origin: far below any other, far above rounding.
             const FIXED: f64 = 1e-9;
             let value = parameter.bounds().lower().abs();
             known = known.with_known(place, FIXED * if value > 0.0 { value } else { 1.0 }).map_err(failed)?;

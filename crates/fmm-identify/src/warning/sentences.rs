@@ -20,7 +20,8 @@ fn limit_of_unit(unit: &str) -> &'static str {
 }
 
 impl Warning {
-    /// The sentences of warnings about friction that varies, and of all below; nothing for others.
+    /// Writes the sentence of a warning about friction that varies, or of another kind that follows in this file; of
+    /// other warnings nothing.
     pub(super) fn write_of_variation(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FrictionChanges { law } => write!(
