@@ -168,7 +168,7 @@ mod tests {
         }
         let damping = Unseen { kind: Kind::Damping, size: 0.0, uncertainty: 1e-3, price: -20.0 };
         let said =
-            "if the machine has no viscous damping (2.5e-3 1/s would not show, and would move its level by 5.0 %)";
+            "if the machine has no viscous damping (0.0025 1/s would not show, and would move its level by 5.0 %)";
         assert_eq!(damping.to_string(), said);
     }
 
