@@ -4,8 +4,8 @@ use nalgebra::DMatrix;
 
 /// JᵀJ of the columns of J, which are equally long.
 ///
-/// Rows are taken in blocks that stay in the cache for all pairs of columns, and each pair once: twenty columns of a
-/// million rows take a tenth of the time of four hundred scalar products.
+/// Rows are taken in blocks that stay in the cache for all pairs of columns, and each pair once: as scalar products of
+/// whole columns, these sums were two fifths of the time of a fit to a million samples.
 pub(crate) fn products(columns: &[&[f64]]) -> DMatrix<f64> {
     /// Rows of a block: twenty columns of it are 160 kB.
     const BLOCK: usize = 1024;
@@ -116,12 +116,26 @@ impl Span {
 mod tests {
     use super::*;
 
-    /// Three columns in a plane: what they take of a direction is its part in the plane.
+    /// More rows than a block, and no multiple of its vectors: integers have exact sums.
+    #[test]
+    fn products_count_every_row_once() {
+        let column = |step: u32| (0..2_105_u32).map(|row| f64::from(row * step % 7) - 3.0).collect::<Vec<_>>();
+        let columns = [column(1), column(2), column(3)];
+        let found = products(&columns.each_ref().map(Vec::as_slice));
+        for (i, a) in columns.iter().enumerate() {
+            for (j, b) in columns.iter().enumerate() {
+                let expected: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+                assert_eq!(found[(i, j)], expected, "{i}, {j}");
+            }
+        }
+    }
+
     #[test]
     fn no_columns_have_no_inverse() {
         assert!(inverse_of_products(&[]).is_empty() && root_of_covariance(&[], 0).is_empty());
     }
 
+    /// Three columns in a plane: what they take of a direction is its part in the plane.
     #[test]
     fn columns_that_are_alike_take_no_more_than_one() {
         let columns = vec![vec![1.0, 0.0, 0.0], vec![1e6, 1e6, 0.0], vec![1e6, 1e6 + 1e-3, 0.0]];
