@@ -84,7 +84,19 @@ impl<D: Scalar, L> Scenario<D, L> {
         })
     }
 
-    /// The scenario with another `law`, whose states are zero at t = 0.
+    /// The scenario with another `law`, whose states are zero at t = 0, whatever those of the one before were.
+    ///
+    /// ```
+    /// use fmm_friction::{Coulomb, Dahl};
+    /// use fmm_model::Oscillator;
+    /// use fmm_sim::Scenario;
+    ///
+    /// // 1 kg on 100 N/m under 5 N, let go at 0.1 m.
+    /// let dry = Scenario::new(Oscillator::new(1.0, 100.0)?, Coulomb::new(0.2)?, 5.0)?.starting_at(0.1, 0.0)?;
+    /// let yielding = dry.clone().with_law(Dahl::new(0.2, 50.0, 1.0)?);
+    /// assert_eq!(yielding.initial(), dry.initial());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn with_law<M>(self, law: M) -> Scenario<D, M> {
         let Self { oscillator, normal_load, sampled_load, load_over_position, initial, excitations, .. } = self;
         let deflections = Vec::new();
