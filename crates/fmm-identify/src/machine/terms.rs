@@ -225,6 +225,17 @@ impl Terms {
         self.iter().filter(is_beside).fold(Self::NONE, Self::with)
     }
 
+    /// The same without the terms of the spring.
+    pub(crate) fn without_spring(mut self) -> Self {
+        Term::ALL.into_iter().filter(|term| term.is_spring()).for_each(|term| self.has[term as usize] = false);
+        self
+    }
+
+    /// The terms of the spring alone.
+    pub(crate) fn of_spring(&self) -> Self {
+        self.iter().filter(|term| term.is_spring()).fold(Self::NONE, Self::with)
+    }
+
     /// True if a term of the spring is fitted.
     pub(crate) fn has_spring(&self) -> bool {
         self.iter().any(Term::is_spring)

@@ -1,5 +1,6 @@
 //! The search for the law that a record asks for: it begins simple and widens as the residuals ask.
 
+mod spared;
 mod varied;
 
 use std::time::Instant;
@@ -90,6 +91,7 @@ impl Inquiry<'_> {
         let changes = found.changes();
         if changes || found.asks_for_more(&tests) {
             run.fit_further(&mut found, &mut tests, changes)?;
+            run.fit_without_spring(&mut found);
         }
         run.fit_changes(&mut found, Found::preferred)?;
         run.fit_over_position(&mut found)?;
