@@ -36,8 +36,13 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
     let pictures = shown().enumerate().map(|(i, quantity)| picture(rows, summary, quantity, i));
     let apart = bullets(apart_lines(summary));
     let apart = if apart.is_empty() { apart } else { section("Records that stand apart", &apart) };
+    let counted = escaped(&records_line(summary));
+    let verdict = match result_line(summary) {
+        Some(result) => format!("<p class=\"verdict\">{}</p>\n<p>{counted}.</p>\n", escaped(&result)),
+        None => format!("<p class=\"verdict\">{counted}</p>\n"),
+    };
     let body = format!(
-        "<h1>{TITLE}</h1>\n<p class=\"verdict\">{}</p>\n<p>{}.</p>\n{}{apart}\
+        "<h1>{TITLE}</h1>\n{verdict}{}{apart}\
          <section><h2>Together</h2>\n<p>Consensus with random effects; its interval is that of Hartung and Knapp, \
          which holds for few records. \
          U = 2 u. The mean without effects takes the records to differ by their uncertainties only. What records \
@@ -48,8 +53,6 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
          <section><h2>How this was made</h2>\n<dl><dt>Program</dt><dd><code>fmm \
          {}</code></dd><dt>Measured</dt><dd>{}</dd>\
          <dt>Options for all</dt><dd><code>{}</code></dd></dl></section>\n",
-        escaped(&result_line(summary).unwrap_or_else(|| records_line(summary))),
-        escaped(&records_line(summary)),
         budget(summary),
         statements(shown()),
         together(summary),
@@ -116,6 +119,9 @@ fn statements<'a>(shown: impl Iterator<Item = &'a Quantity>) -> String {
 
 /// Consensus of the records, as two tables: results, and statistics.
 fn together(summary: &Summary) -> String {
+    if summary.quantities.is_empty() {
+        return "<p>No quantity has a consensus.</p>\n".to_owned();
+    }
     let heading = |quantity: &Quantity| row_heading(&label(words(&name(quantity)), &quantity.unit));
     let result = |quantity: &Quantity| {
         let Quantity { mean, u, interval_95: [low, high], .. } = *quantity;
