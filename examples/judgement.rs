@@ -9,6 +9,7 @@
 mod judgement;
 
 use std::io::Write as _;
+use std::ops::Range;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -26,6 +27,9 @@ struct Arguments {
     /// Records a cell, instead of 200 (30 for the cells of laws)
     #[arg(long)]
     seeds: Option<u64>,
+    /// Number of the first record of each cell: from one that nobody has looked at, on what is unseen
+    #[arg(long, default_value_t = 0)]
+    first: u64,
     /// Only these cells; the beginning of names, such as falling/, stands for all of them
     #[arg(long = "cell", value_name = "NAME", value_delimiter = ',')]
     names: Vec<String>,
@@ -74,9 +78,10 @@ impl Arguments {
         Ok(cells)
     }
 
-    /// Records of `cell`.
-    fn records(&self, cell: &Cell) -> u64 {
-        self.seeds.unwrap_or(if self.quick { FEW } else { cell.group.records() })
+    /// Numbers of the records of `cell`.
+    fn records(&self, cell: &Cell) -> Range<u64> {
+        let count = self.seeds.unwrap_or(if self.quick { FEW } else { cell.group.records() });
+        self.first..self.first + count
     }
 }
 
@@ -113,10 +118,10 @@ fn run(arguments: &Arguments) -> Found<()> {
         }
         return Ok(());
     }
-    let counts: Vec<u64> = cells.iter().map(|cell| arguments.records(cell)).collect();
-    let bar = ProgressBar::new(counts.iter().sum());
+    let numbers: Vec<Range<u64>> = cells.iter().map(|cell| arguments.records(cell)).collect();
+    let bar = ProgressBar::new(numbers.iter().map(|records| records.end - records.start).sum());
     bar.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} records, {eta} left")?);
-    let outcomes = study(&cells, &counts, arguments.threads, &|| bar.inc(1));
+    let outcomes = study(&cells, &numbers, arguments.threads, &|| bar.inc(1));
     bar.finish_and_clear();
     let summaries: Vec<Summary> =
         cells.iter().zip(&outcomes).map(|(cell, outcomes)| Summary::of(cell, outcomes)).collect();

@@ -1,5 +1,6 @@
 //! All records of all cells, over threads.
 
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -26,11 +27,16 @@ fn outcome(cell: &Cell, record: u64) -> Outcome {
     Outcome { verdict: verdict.map(|verdict| (case.truth, verdict)).map_err(|error| error.to_string()), seconds }
 }
 
-/// The outcomes of `counts` records of `cells`, cell by cell in the order of their numbers; `done` is called after
-/// each.
-pub(crate) fn study(cells: &[Cell], counts: &[u64], threads: usize, done: &(dyn Fn() + Sync)) -> Vec<Vec<Outcome>> {
-    let numbers = counts.iter().enumerate().flat_map(|(cell, count)| (0..*count).map(move |record| (cell, record)));
-    let jobs: Vec<(usize, u64)> = numbers.collect();
+/// The outcomes of the records of `cells` by their numbers, cell by cell in the order of their numbers; `done` is called
+/// after each.
+pub(crate) fn study(
+    cells: &[Cell],
+    numbers: &[Range<u64>],
+    threads: usize,
+    done: &(dyn Fn() + Sync),
+) -> Vec<Vec<Outcome>> {
+    let jobs = numbers.iter().enumerate().flat_map(|(cell, records)| records.clone().map(move |record| (cell, record)));
+    let jobs: Vec<(usize, u64)> = jobs.collect();
     let next = AtomicUsize::new(0);
     let finished = Mutex::new(Vec::with_capacity(jobs.len()));
     std::thread::scope(|scope| {
