@@ -121,12 +121,20 @@ impl Judgement {
         // A fit that has not ended gives an upper bound of the misfit of its law, not its parameters.
         let is_any = (0..misfits.len()).any(|i| p_values[i] >= UNFIT && is_finished[i]);
         let bears = |i: &usize| p_values[*i] >= UNFIT && (is_finished[*i] || !is_any);
-        let preferred = (0..misfits.len()).filter(bears).min_by(|&a, &b| {
+        // One more parameter that only follows the noise is none the less one more where another ended on its bound.
+        let count = |i: usize| candidates[i].parameter_count();
+        let does_without = |special: usize, i: usize| {
+            bears(&special)
+                && rank(special) == rank(i)
+                && count(special) < count(i)
+                && candidates[special].is_nested_in(&candidates[i])
+        };
+        let is_simplest = |i: &usize| !(0..misfits.len()).any(|special| does_without(special, *i));
+        let preferred = (0..misfits.len()).filter(bears).filter(is_simplest).min_by(|&a, &b| {
             let (near, far) = (misfits[a], misfits[b]);
             let by_misfit =
                 if (near - far).abs() > EQUAL_MISFIT { near.total_cmp(&far) } else { std::cmp::Ordering::Equal };
-            let by_count = candidates[a].parameter_count().cmp(&candidates[b].parameter_count());
-            rank(a).cmp(&rank(b)).then(by_misfit).then(by_count)
+            rank(a).cmp(&rank(b)).then(by_misfit).then(count(a).cmp(&count(b)))
         })?;
         let mut judgement = Self { misfits, p_values, scores, is_finished, preferred, is_decided: true };
         judgement.is_decided =

@@ -1,7 +1,7 @@
 //! Friction over speed without a law, from records whose curve is known.
 
-use fmm_friction::{CoulombViscous, LawFamily, RegularisedStribeck};
-use fmm_identify::{Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation, search};
+use fmm_friction::{CoulombViscous, ExponentialPair, LawFamily, RegularisedStribeck};
+use fmm_identify::{Comparison, Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
 
-use crate::simulated::{INTERVAL, Motion, machine, record};
+use crate::simulated::{self, INTERVAL, Motion, machine, record};
 
 /// Velocity (m/s) of 2 Hz, F/m = 0.3 m/s² and c/m of this `damping` (1/s), released at 20 mm, at `rate` (Hz), noise
 /// left out.
@@ -187,19 +187,39 @@ fn runs_under_other_loads_are_refused() {
     assert!(error.to_string().contains("under one load"), "{error}");
 }
 
+/// Searches of three records of the machine of the thesis without damping, under a contact of the law `F`.
+fn searched<F: LawFamily>(law: &[f64]) -> Vec<Comparison> {
+    let initial = (0.022, 0.0);
+    let load = simulated::LOAD;
+    let motion = Motion { damping: 0.0, law, load, initial, force: None, samples: 3000, interval: INTERVAL };
+    let velocity = motion.of::<F>().velocity().values().to_vec();
+    let of_seed = |seed| {
+        let record = record(&velocity, 1e-3, seed, Quantity::Velocity, "m/s");
+        search(&machine(), &[Experiment::ring_down(&record, &Preparation::default()).unwrap()]).unwrap()
+    };
+    (0..3).map(of_seed).collect()
+}
+
 /// A curve is not smooth where a law rises within its first levels: such a law is fitted all the same, and wins where it
 /// is true.
 #[test]
 fn a_law_that_rises_within_the_first_levels_is_not_excluded() {
-    let law = [0.3, 0.2, 0.01, 0.02];
-    let initial = (0.022, 0.0);
-    let motion =
-        Motion { damping: 0.0, law: &law, load: LOAD, initial, force: None, samples: 3000, interval: INTERVAL };
-    let velocity = motion.of::<RegularisedStribeck>().velocity().values().to_vec();
-    for seed in 0..3 {
-        let record = record(&velocity, 1e-3, seed, Quantity::Velocity, "m/s");
-        let found = search(&machine(), &[Experiment::ring_down(&record, &Preparation::default()).unwrap()]).unwrap();
+    for found in searched::<RegularisedStribeck>(&[0.3, 0.2, 0.01, 0.02]) {
         assert_eq!(found.preferred().law(), RegularisedStribeck::NAME, "{found}");
+    }
+}
+
+/// Friction that is no function of the speed asks for a bent spring beside a curve. The law that is true is left without
+/// one.
+#[test]
+fn a_law_that_does_not_show_a_bent_spring_is_left_without() {
+    for found in searched::<ExponentialPair>(&[0.2, 0.3, 10.0, 50.0]) {
+        let preferred = found.preferred();
+        assert!(preferred.law().starts_with(ExponentialPair::NAME) && !preferred.law().contains("spring"), "{found}");
+        for (level, truth) in [("sliding_mu", 0.2), ("static_mu", 0.3)] {
+            let (low, high) = preferred.interval(level, 0.95).unwrap();
+            assert!((low..=high).contains(&truth), "{level} of {found}");
+        }
     }
 }
 
