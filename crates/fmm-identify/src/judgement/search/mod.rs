@@ -91,7 +91,6 @@ impl Inquiry<'_> {
         let changes = found.changes();
         if changes || found.asks_for_more(&tests) {
             run.fit_further(&mut found, &mut tests, changes)?;
-            run.fit_without_spring(&mut found);
         }
         run.fit_changes(&mut found, Found::preferred)?;
         run.fit_over_position(&mut found)?;
@@ -100,6 +99,7 @@ impl Inquiry<'_> {
         }
         run.follow_special_cases(&mut found);
         run.finish(&mut found);
+        run.fit_without_spring(&mut found);
         let dropped = found.drop_unfinished(&self.at(SearchStage::Simple));
         tests.retain(|test| test.uncertainty.is_finite());
         left_out.extend(found.failures());
@@ -308,15 +308,19 @@ impl Run<'_, '_> {
             return;
         }
         let place = judgement.preferred;
-        let begin = Begin::Extended(&found.identifications[place].fitted);
-        let options = self.options.clone().with_max_iterations(self.options.max_iterations().min(MOST_ITERATIONS));
-        let end = self.inquiry.fit(&found.candidates[place], self.decays.into(), begin, &options, self.end);
-        if let Ok(end) = end {
-            let own = &mut found.identifications[place];
-            if end.fit().outcome().is_success() && end.fit().sum_of_squares() <= own.fit().sum_of_squares() {
-                *own = end;
-            }
+        let own = &mut found.identifications[place];
+        if let Some(end) = self.fit_to_end(&found.candidates[place], &own.fitted)
+            && end.fit().sum_of_squares() <= own.fit().sum_of_squares()
+        {
+            *own = end;
         }
+    }
+
+    /// The fit by `candidate` from where another has ended, if it comes to an end.
+    fn fit_to_end(&self, candidate: &Candidate, from: &Fitted) -> Option<Identification> {
+        let options = self.options.clone().with_max_iterations(self.options.max_iterations().min(MOST_ITERATIONS));
+        let end = self.inquiry.fit(candidate, self.decays.into(), Begin::Extended(from), &options, self.end);
+        end.ok().filter(|end| end.fit().outcome().is_success())
     }
 
     /// Adds fits by the laws that the friction over the speed allows, beside a spring that bends and a change of the
