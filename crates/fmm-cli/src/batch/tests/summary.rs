@@ -62,6 +62,10 @@ fn the_most_influential_record_is_named() {
     let summary = Summary::of(&campaign, &rows[1..3], &NOTHING, None);
     let text = table::text(&rows, &summary);
     assert!(summary.quantities.is_empty() && text.contains("--count-doubtful counts the others as well"), "{text}");
+    // The page says its count once, and has no table without a row.
+    let page = page::page(&campaign, &rows, &summary);
+    assert!(page.matches("records identified").count() == 1 && !page.contains("class=\"findings\""), "{page}");
+    assert!(page.contains("No quantity has a consensus"), "{page}");
 }
 
 /// Six runs under one load that is known to 0.5 %: the consensus does not know μ better than that. Two loads that are
