@@ -27,8 +27,8 @@ struct Arguments {
     /// Records a cell, instead of 200 (30 for the cells of laws)
     #[arg(long)]
     seeds: Option<u64>,
-    /// Number of the first record of each cell: from one that nobody has looked at, on what is unseen
-    #[arg(long, default_value_t = 0)]
+    /// Number of the first record of each cell; rules were chosen by those from 0 on
+    #[arg(long, default_value_t = 0, conflicts_with = "speed")]
     first: u64,
     /// Only these cells; the beginning of names, such as falling/, stands for all of them
     #[arg(long = "cell", value_name = "NAME", value_delimiter = ',')]
@@ -81,7 +81,7 @@ impl Arguments {
     /// Numbers of the records of `cell`.
     fn records(&self, cell: &Cell) -> Range<u64> {
         let count = self.seeds.unwrap_or(if self.quick { FEW } else { cell.group.records() });
-        self.first..self.first + count
+        self.first..self.first.saturating_add(count)
     }
 }
 
