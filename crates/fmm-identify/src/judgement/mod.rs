@@ -121,7 +121,8 @@ impl Judgement {
         // A fit that has not ended gives an upper bound of the misfit of its law, not its parameters.
         let is_any = (0..misfits.len()).any(|i| p_values[i] >= UNFIT && is_finished[i]);
         let bears = |i: &usize| p_values[*i] >= UNFIT && (is_finished[*i] || !is_any);
-        // One more parameter that only follows the noise is none the less one more where another ended on its bound.
+        // A parameter on its bound is not counted: a law and its special case may use as many, and the special case is
+        // simpler all the same.
         let count = |i: usize| candidates[i].parameter_count();
         let does_without = |special: usize, i: usize| {
             bears(&special)
