@@ -143,6 +143,26 @@ impl Record {
         Self::new(self.start, stride as f64 * self.interval, values, self.quantity(), self.unit())
     }
 
+    /// Means of `count` samples in a row each, in the middle of their times. A rest that makes no whole row is left out.
+    ///
+    /// # Errors
+    /// [`RecordError::Options`] for a count of 0 or of more samples than there are, and for samples at unequal
+    /// intervals.
+    pub fn means(&self, count: usize) -> Result<Self, RecordError> {
+        if count == 0 || count > self.len() {
+            let samples = self.len();
+            return Err(RecordError::options(format!("means of {count} of {samples} samples; give 1 to {samples}")));
+        }
+        if !self.is_equally_spaced() {
+            return Err(RecordError::options(
+                "means were asked for of samples at unequal intervals; take the record at equal intervals first",
+            ));
+        }
+        let values = self.values().chunks_exact(count).map(|row| row.iter().sum::<f64>() / count as f64).collect();
+        let start = self.start + 0.5 * (count - 1) as f64 * self.interval;
+        Self::new(start, count as f64 * self.interval, values, self.quantity(), self.unit())
+    }
+
     /// The same motion at equal intervals: this record, or one with a sample at every usual (median) step between the
     /// first and the last, on cubics between the measured ones.
     ///
@@ -241,6 +261,17 @@ mod tests {
         let even = record.equally_spaced();
         let deviations = even.times().zip(even.values()).map(|(time, value)| (value - motion(time)).abs());
         deviations.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn means_lie_in_the_middle_of_their_times() {
+        let line = Record::new(3.0, 0.5, (0..8).map(f64::from).collect(), Quantity::Velocity, "m/s").unwrap();
+        let means = line.means(3).unwrap();
+        assert_eq!((means.values(), means.start(), means.interval()), ([1.0, 4.0].as_slice(), 3.5, 1.5));
+        assert_eq!(line.means(1).unwrap(), line);
+        assert!(says(&line.means(0), "means of 0 of 8 samples; give 1 to 8"));
+        assert!(says(&line.means(9), "means of 9 of 8 samples; give 1 to 8"));
+        assert!(says(&record(jitter, |_| true).means(2), "unequal intervals"));
     }
 
     #[test]

@@ -13,7 +13,7 @@ mod impact_trial;
 mod limits;
 mod lines;
 pub(crate) mod nuisance;
-mod parts;
+pub(crate) mod parts;
 mod planned;
 mod preparation;
 mod ring_down;

@@ -1,11 +1,23 @@
-//! Parts of an experiment: up to a time, between its reversals, or with few of its samples.
+//! Parts of an experiment: up to a time, between its reversals, with few of its samples, or by means of samples.
 
+use std::borrow::Cow;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use fmm_record::Quantity;
 
 use crate::experiment::preparation::RecordSummary;
 use crate::experiment::{Experiment, FEWEST_SAMPLES};
+
+/// The experiments, those [by means](Experiment::averaged) of which that loses nothing.
+pub(crate) fn averaged(experiments: &[Experiment]) -> Cow<'_, [Experiment]> {
+    let averaged: Vec<Option<Experiment>> = experiments.iter().map(Experiment::averaged).collect();
+    if averaged.iter().all(Option::is_none) {
+        return Cow::Borrowed(experiments);
+    }
+    let or_whole = |(means, whole): (Option<Experiment>, &Experiment)| means.unwrap_or_else(|| whole.clone());
+    averaged.into_iter().zip(experiments).map(or_whole).collect()
+}
 
 impl Experiment {
     /// The same ring-down up to its last peak; `None` if that leaves nothing out or too little.
@@ -84,5 +96,54 @@ impl Experiment {
         let summary = RecordSummary { samples: kept.iter().map(Range::len).sum(), ..self.summary.clone() };
         let shapes = self.shapes.iter().map(|shape| shape.iter().copied().step_by(stride).collect()).collect();
         Some(Self { record, kept, shapes, summary, ..self.clone() })
+    }
+
+    /// The same ring-down by means of as many samples in a row as tell no less of the motion; `None` where that is one,
+    /// and for what is no free vibration of a spring.
+    ///
+    /// A mean differs from the motion in the middle of its row by x″ h²/24 over a length of time h, which only scales a
+    /// sine, and at a reversal or stop, where the acceleration jumps by Δa, by at most Δa h/8 in a velocity and Δa h²/48
+    /// in a displacement.
+    pub(crate) fn averaged(&self) -> Option<Self> {
+        /// Means in a period (1), at least. Origin: they scale a sine by 2e-6.
+        const FEWEST: f64 = 1000.0;
+        /// Largest error by a jump of the acceleration over the noise of a mean (1). Origin: chosen; one mean in each
+        /// half cycle has it, and levels of a curve then move by a hundredth of their uncertainty.
+        const UNSEEN: f64 = 0.3;
+        let is_plain = self.driven.is_none() && self.run_down.is_none() && self.lines.is_none();
+        let is_white = self.sensor.low_pass().is_none() && !self.summary.is_rounded();
+        if !(is_plain && is_white && self.record.is_equally_spaced()) {
+            return None;
+        }
+        let (interval, angular) = (self.record.interval(), 2.0 * PI * self.guess.frequency());
+        // Friction takes Δa/ω from the velocity with each half cycle.
+        let (first, last) = self.summary.amplitudes;
+        let loss = (first - last) / self.summary.half_swings.saturating_sub(1).max(1) as f64;
+        // Δa h/8 < UNSEEN σ/√n with h = n Δt, and the same with Δa h²/48.
+        let most = match self.record.quantity() {
+            Quantity::Velocity => (8.0 * UNSEEN * self.white_noise() / (angular * loss * interval)).powf(2.0 / 3.0),
+            Quantity::Displacement => {
+                (48.0 * UNSEEN * self.white_noise() / (angular * angular * loss * interval * interval)).powf(0.4)
+            }
+            _ => return None,
+        };
+        let count = most.min(1.0 / (self.guess.frequency() * interval * FEWEST));
+        if !(count >= 2.0) {
+            return None;
+        }
+        let count = count as usize;
+        let record = self.record.means(count).ok()?;
+        let whole = |range: &Range<usize>| range.start.div_ceil(count)..range.end / count;
+        let kept: Vec<Range<usize>> = self.kept.iter().map(whole).filter(|range| !range.is_empty()).collect();
+        let means =
+            |shape: &Vec<f64>| shape.chunks_exact(count).map(|row| row.iter().sum::<f64>() / count as f64).collect();
+        let shapes = self.shapes.iter().map(means).collect();
+        let summary = RecordSummary {
+            samples: kept.iter().map(Range::len).sum(),
+            noise: record.noise(),
+            resolution: None,
+            ..self.summary.clone()
+        };
+        (summary.samples >= FEWEST_SAMPLES).then(|| Self { record, kept, shapes, summary, ..self.clone() })
     }
 }

@@ -10,6 +10,7 @@ use nalgebra::DVector;
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
+use crate::experiment::parts::averaged;
 use crate::experiment::{Experiment, scaled};
 use crate::fit::stages::{Begin, fit_begun};
 use crate::friction_curve::levels::{KNOTS, LEVELS, Levels, TOP_SPEED, weights};
@@ -101,7 +102,18 @@ impl CurveFit {
         experiments: &[Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, experiments, end)?;
+        Self::of_means(machine, beside, experiments, &averaged(experiments), end)
+    }
+
+    /// The curve that `experiments` share by their `means`.
+    fn of_means(
+        machine: &Machine,
+        beside: &Terms,
+        experiments: &[Experiment],
+        means: &[Experiment],
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
+        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, means, end)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
             let few = Settled::of(&problem.with_records(&thinned).simulated_roughly(), values, scale, MOST_STEPS, end)?;
@@ -117,7 +129,8 @@ impl CurveFit {
         if !has_ended {
             return Err(not_settled());
         }
-        let path = Path::of(problem, &values).map_err(failure)?;
+        // Speeds at the samples of the records.
+        let path = Path::of(&problem.with_records(experiments), &values).map_err(failure)?;
         Ok(Self {
             top,
             scale,
@@ -293,5 +306,62 @@ impl Linearised {
         let (precision, information) = (&likelihood.precision * (scale * scale), &likelihood.information * scale);
         let posterior = prior.posterior(&precision, &information);
         if posterior.is_finite() { Ok((likelihood, posterior)) } else { Err(undetermined()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::Stribeck;
+    use fmm_model::Oscillator;
+    use fmm_record::{Quantity, Record};
+    use fmm_sim::{Scenario, simulate};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    use super::*;
+    use crate::experiment::Preparation;
+
+    /// Samples at 40 kHz of a motion of 2 Hz with friction that falls over the speed, with noise of this share of the
+    /// largest value.
+    fn ring_down(quantity: Quantity, noise: f64) -> Experiment {
+        let law = Stribeck::new(0.3, 0.4, 0.05, 2.0, 0.2).unwrap();
+        let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+        let sampling = Sampling::uniform(2.5e-5, 100_000).unwrap();
+        let motion = simulate(&scenario.starting_at(0.03, 0.0).unwrap(), &sampling).unwrap();
+        let (samples, largest, unit) = match quantity {
+            Quantity::Displacement => (motion.position(), 0.03, "m"),
+            _ => (motion.velocity(), 0.35, "m/s"),
+        };
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let normal = Normal::new(0.0, noise * largest).unwrap();
+        let values = samples.values().iter().map(|value| value + normal.sample(&mut random)).collect();
+        let record = Record::new(0.0, 2.5e-5, values, quantity, unit).unwrap();
+        Experiment::ring_down(&record, &Preparation::default()).unwrap()
+    }
+
+    /// The curve does not depend on the means: a tenth of the uncertainty at most.
+    #[test]
+    fn means_tell_what_samples_tell() {
+        for (quantity, noise) in [
+            (Quantity::Velocity, 0.02),
+            (Quantity::Velocity, 2e-3),
+            (Quantity::Velocity, 1e-4),
+            (Quantity::Displacement, 2e-3),
+        ] {
+            let experiments = [ring_down(quantity, noise)];
+            let means = [experiments[0].averaged().unwrap()];
+            let [few, all] = [&means, &experiments]
+                .map(|of| CurveFit::of_means(&Machine::per_unit_mass(), &Terms::NONE, &experiments, of, None).unwrap());
+            assert!(means[0].record().len() <= 50_000, "{quantity} {noise}");
+            let spread = all.posterior.deviations();
+            for (i, (own, other)) in few.posterior.mean().iter().zip(&all.posterior.mean()).enumerate() {
+                let change = (few.scale * own / all.scale - other) / spread[i];
+                assert!(change.abs() < 0.1, "{quantity} with noise of {noise}: level {i} by {change} u");
+                let ratio = few.posterior.deviations()[i] * few.scale / (all.scale * spread[i]);
+                assert!((ratio - 1.0).abs() < 0.02, "{quantity} with noise of {noise}: u of level {i} by {ratio}");
+            }
+            assert!(few.slowest < 1e-4, "samples down to {} m/s", few.slowest);
+        }
     }
 }
