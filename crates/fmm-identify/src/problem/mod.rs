@@ -16,12 +16,14 @@ use crate::law::{Law, Motion, Simulate};
 use crate::machine::term::Term;
 use crate::machine::{Machine, Scale, Terms};
 use crate::problem::force::Forces;
+use crate::problem::idle::{Idle, Simulated};
 use crate::quantities::prior::Prior;
 use crate::quantities::rows::Place;
 use crate::quantities::table::Table;
 
 mod declared;
 pub(crate) mod force;
+mod idle;
 mod motion;
 pub(crate) mod parts;
 mod residuals;
@@ -56,6 +58,7 @@ pub struct Problem<'a> {
     declared: Vec<f64>,
     /// Forces along motions in place of the experiments.
     forces: Option<Forces<'a>>,
+    idle: Idle,
 }
 
 /// A simulation without derivatives.
@@ -112,6 +115,7 @@ impl<'a> Problem<'a> {
             euler: None,
             declared: Vec::new(),
             forces: None,
+            idle: Idle::default(),
         };
         problem.blocks = problem.blocks_of_records();
         problem
@@ -208,7 +212,7 @@ impl<'a> Problem<'a> {
     /// Simulates `record` by `simulate` once, window by window; `visit` gets, for each of `ranges` in a window, the
     /// number of samples of the ranges before it, its samples' indices in the record, and those among the simulated
     /// samples.
-    fn simulate<D: Scalar>(
+    fn simulate<D: Simulated>(
         &self,
         simulate: Simulate<'_, D>,
         record: usize,
@@ -222,31 +226,32 @@ impl<'a> Problem<'a> {
         let motion = self.motion::<D>(record, p, directions)?;
         let mut sight = Sight::of(experiment, self.corner(record, p));
         let sampling = experiment.sampling()?.keeping(sight.channels());
-        let mut trajectory = Trajectory::new();
         let mut before = 0;
-        // A filter sees all samples in turn.
-        let (mut next, mut start) = (0, if sight.is_filtered() { 0 } else { first_range.start });
-        while start < last_range.end {
-            let end = last_range.end.min(start + WINDOW);
-            let Some(window) = sampling.window(start..end) else { break };
-            simulate(&motion, &window, &mut trajectory)?;
-            let seen = sight.see(&trajectory);
-            while let Some(range) = ranges.get(next) {
-                let samples = range.start.max(start)..range.end.min(end);
-                if !samples.is_empty() {
-                    let count = samples.len();
-                    let inside = samples.start - start..samples.end - start;
-                    visit(before, samples, inside, &seen);
-                    before += count;
+        self.idle.lend(|trajectory| {
+            // A filter sees all samples in turn.
+            let (mut next, mut start) = (0, if sight.is_filtered() { 0 } else { first_range.start });
+            while start < last_range.end {
+                let end = last_range.end.min(start + WINDOW);
+                let Some(window) = sampling.window(start..end) else { break };
+                simulate(&motion, &window, trajectory)?;
+                let seen = sight.see(trajectory);
+                while let Some(range) = ranges.get(next) {
+                    let samples = range.start.max(start)..range.end.min(end);
+                    if !samples.is_empty() {
+                        let count = samples.len();
+                        let inside = samples.start - start..samples.end - start;
+                        visit(before, samples, inside, &seen);
+                        before += count;
+                    }
+                    if range.end > end {
+                        break;
+                    }
+                    next += 1;
                 }
-                if range.end > end {
-                    break;
-                }
-                next += 1;
+                start = end;
             }
-            start = end;
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     /// The motion of the first record by these values.

@@ -11,6 +11,7 @@ use super::Problem;
 use crate::candidate::Candidate;
 use crate::experiment::Experiment;
 use crate::experiment::reference;
+use crate::problem::idle::Idle;
 
 /// Samples of a record, and of each of its periods, that are enough to search with. With fewer, a run takes as long,
 /// and the last fit begins farther from its end.
@@ -115,6 +116,7 @@ impl Problem<'_> {
             euler: self.euler,
             declared: self.declared.clone(),
             forces: None,
+            idle: Idle::default(),
         };
         problem.blocks = problem.blocks_of_records();
         problem

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use fmm_fit::{Block, Derivatives, EvaluationError, Residuals};
-use fmm_model::{Dual, Parameter};
+use fmm_model::{Dual, Parameter, widest};
 
 use super::Problem;
 use crate::law::{DIRECTIONS, FEW, Simulate};
+use crate::problem::idle::Simulated;
 use crate::quantities::rows::Place;
 use crate::threads::on_all_threads;
 
@@ -21,24 +22,12 @@ struct Part<'o> {
 }
 
 impl Problem<'_> {
-    /// Refuses a motion that follows the parameter at `index`, of this `value`, more steeply than any that can be
-    /// fitted.
-    fn require_smooth(
-        &self,
-        record: usize,
-        index: usize,
-        value: f64,
-        derivatives: &[f64],
-    ) -> Result<(), EvaluationError> {
+    /// Largest derivative of the motion of `record` by a parameter of this `value`; steeper ones can't be fitted.
+    fn steepest(&self, record: usize, value: f64) -> f64 {
         /// Largest change of the motion, in amplitudes, for a parameter that is doubled (1). Origin: that of the phase
         /// after ten million periods.
         const STEEP: f64 = 1e8;
-        let most = STEEP * self.experiments[record].summary().amplitudes.0;
-        if derivatives.iter().all(|derivative| (derivative * value).abs() <= most) {
-            return Ok(());
-        }
-        let name = self.parameters[index].name();
-        Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
+        (STEEP * self.experiments[record].summary().amplitudes.0 / value.abs()).min(f64::MAX)
     }
 
     /// True if derivatives by the parameter at `index` are asked for.
@@ -55,8 +44,8 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// Fills the `columns` of `record` that need no simulation, those of the offset and of the disturbances, and gives
-    /// the others to `parts`, so many to each.
+    /// Fills the `columns` of `record` that need no simulation, those of the offset and of the disturbances, and gives the
+    /// others to `parts`, so many to each; derivatives by what is held are not written.
     fn divide<'o>(
         &self,
         record: usize,
@@ -71,6 +60,7 @@ impl Problem<'_> {
         let columns = columns.chunks_exact_mut(experiment.rows().max(1));
         for (column, &index) in columns.zip(self.blocks[record].parameters()) {
             match self.table.rows[index].place {
+                _ if !self.is_wanted(index) => {}
                 Place::Offset if experiment.lines().is_none() => column.fill(weight),
                 Place::Offset => self.map(record, &vec![weight; experiment.summary().samples], column)?,
                 Place::Disturbance(at) => {
@@ -78,12 +68,14 @@ impl Problem<'_> {
                     let kept = experiment.kept().iter().flat_map(|range| &shape[range.clone()]);
                     self.map(record, &kept.map(|shape| weight * shape).collect::<Vec<_>>(), column)?;
                 }
-                Place::Corner => by_corner = Some(column),
-                _ if self.is_wanted(index) => {
+                Place::Corner => {
+                    column.fill(0.0);
+                    by_corner = Some(column);
+                }
+                _ => {
                     directions.push(index);
                     wanted.push(column);
                 }
-                _ => {}
             }
         }
         let most = if directions.len() <= FEW { FEW } else { DIRECTIONS };
@@ -142,32 +134,32 @@ impl Problem<'_> {
         simulate: Simulate<'_, Dual<N>>,
         p: &[f64],
         part: Part<'_>,
-    ) -> Result<(), EvaluationError> {
+    ) -> Result<(), EvaluationError>
+    where
+        Dual<N>: Simulated,
+    {
         let Part { record, directions, mut columns, mut residuals, mut by_corner } = part;
-        let kept = self.experiments[record].kept();
+        let (kept, weight) = (self.experiments[record].kept(), self.weights[record]);
+        let mut steep = None;
         self.simulate(simulate, record, p, &directions, kept, |before, samples, inside, seen| {
             let rows = before..before + inside.len();
             if let Some(residuals) = &mut residuals {
                 self.write_residuals(record, p, samples, &seen.values()[inside.clone()], &mut residuals[rows.clone()]);
             }
             if let (Some(out), Some(by_corner)) = (&mut by_corner, seen.by_corner()) {
-                out[rows.clone()].copy_from_slice(&by_corner[inside.clone()]);
+                write_weighted(&by_corner[inside.clone()], weight, f64::INFINITY, &mut out[rows.clone()]);
             }
-            for (direction, column) in columns.iter_mut().enumerate() {
+            for ((index, column), direction) in directions.iter().zip(&mut columns).zip(0..) {
                 let Some(partial) = seen.partial(direction) else { continue };
-                column[rows.clone()].copy_from_slice(&partial[inside.clone()]);
+                let steepest = self.steepest(record, p[*index]);
+                if !write_weighted(&partial[inside.clone()], weight, steepest, &mut column[rows.clone()]) {
+                    steep = Some(*index);
+                }
             }
         })?;
-        for (index, column) in directions.iter().zip(&columns) {
-            self.require_smooth(record, *index, p[*index], column)?;
-        }
-        let weight = self.weights[record];
-        if weight != 1.0 {
-            for element in columns.into_iter().chain(by_corner).flatten() {
-                *element *= weight;
-            }
-        }
-        Ok(())
+        let Some(index) = steep else { return Ok(()) };
+        let (name, value) = (self.parameters[index].name(), p[index]);
+        Err(EvaluationError::message(format!("the motion changes with {name} by leaps near {value:e}")))
     }
 
     /// Writes the residuals of `samples` of `record`.
@@ -181,9 +173,15 @@ impl Problem<'_> {
     ) {
         let offset = self.offset(record, p);
         let measured = &self.experiments[record].record().values()[samples.clone()];
-        for ((out, model), measured) in residuals.iter_mut().zip(simulated).zip(measured) {
-            *out = model + offset - measured;
-        }
+        widest(
+            #[inline(always)]
+            || {
+                let offset = offset;
+                for ((out, model), measured) in residuals.iter_mut().zip(simulated).zip(measured) {
+                    *out = model + offset - measured;
+                }
+            },
+        );
         for (size, shape) in self.disturbances(record, p) {
             let shape = &shape[samples.clone()];
             residuals.iter_mut().zip(shape).for_each(|(out, shape)| *out += size * shape);
@@ -213,6 +211,23 @@ impl Problem<'_> {
     }
 }
 
+/// Writes `derivatives` times `weight`; false if one of them is larger than `most` or no number.
+fn write_weighted(derivatives: &[f64], weight: f64, most: f64, out: &mut [f64]) -> bool {
+    let smooth = widest(
+        #[inline(always)]
+        || {
+            // Copies and a count are what vectors take.
+            let (weight, most, mut smooth) = (weight, most, 0_u64);
+            for (out, derivative) in out.iter_mut().zip(derivatives) {
+                *out = derivative * weight;
+                smooth += u64::from(derivative.abs() <= most);
+            }
+            smooth
+        },
+    );
+    smooth == derivatives.len() as u64
+}
+
 impl Residuals for Problem<'_> {
     fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -237,7 +252,6 @@ impl Residuals for Problem<'_> {
             }
             return Ok(());
         };
-        jacobian.fill(0.0);
         let mut elements = jacobian;
         let mut parts = Vec::new();
         for (record, block) in (0..self.experiments.len()).zip(&self.blocks) {
@@ -368,10 +382,13 @@ mod tests {
     fn a_motion_that_leaps_is_refused() {
         let decays = decays();
         let problem = Problem::of(&Candidate::of::<Stribeck>(), Machine::per_unit_mass(), &decays).unwrap();
-        let steepest = 1e8 * decays[0].summary().amplitudes.0 / 4.0;
-        assert!(problem.require_smooth(0, 0, 4.0, &[0.0, -0.99 * steepest]).is_ok());
+        let steepest = problem.steepest(0, -4.0);
+        assert_eq!(steepest, 1e8 * decays[0].summary().amplitudes.0 / 4.0);
+        let mut out = [f64::NAN; 2];
+        assert!(write_weighted(&[0.0, -0.99 * steepest], 0.5, steepest, &mut out));
+        assert_eq!(out, [0.0, -0.495 * steepest]);
         for derivative in [1.01 * steepest, -1.01 * steepest, f64::NAN] {
-            assert!(problem.require_smooth(0, 0, 4.0, &[0.0, derivative]).is_err(), "{derivative:e}");
+            assert!(!write_weighted(&[derivative, 0.0], 1.0, steepest, &mut out), "{derivative:e}");
         }
     }
 }
