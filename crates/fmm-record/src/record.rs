@@ -352,13 +352,10 @@ impl Record {
 
     /// The same motion in `most` samples or fewer: the means of neighbours where there are more.
     pub(crate) fn in_at_most(&self, most: usize) -> Cow<'_, Self> {
-        let group = self.len().div_ceil(most);
-        if group == 1 {
-            return Cow::Borrowed(self);
+        match self.len().div_ceil(most) {
+            1 => Cow::Borrowed(self),
+            group => self.means(group).map_or(Cow::Borrowed(self), Cow::Owned),
         }
-        let start = self.start + 0.5 * (group - 1) as f64 * self.interval;
-        let means = Self { interval: group as f64 * self.interval, ..self.derived(start, Vec::new()) };
-        Cow::Owned(Self { values: self.values.chunks_exact(group).map(mean).collect(), ..means })
     }
 
     /// Every sample times `factor`, in the new `unit`.

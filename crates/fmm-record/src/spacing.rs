@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::error::RecordError;
 use crate::examination::noise::noise;
-use crate::numerics::median;
+use crate::numerics::{mean, median};
 use crate::record::{Record, Span};
 use crate::sampling::whole_hertz;
 use crate::units::Quantity;
@@ -158,7 +158,7 @@ impl Record {
                 "means were asked for of samples at unequal intervals; take the record at equal intervals first",
             ));
         }
-        let values = self.values().chunks_exact(count).map(|row| row.iter().sum::<f64>() / count as f64).collect();
+        let values = self.values().chunks_exact(count).map(mean).collect();
         let start = self.start + 0.5 * (count - 1) as f64 * self.interval;
         Self::new(start, count as f64 * self.interval, values, self.quantity(), self.unit())
     }
