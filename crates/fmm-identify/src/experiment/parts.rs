@@ -101,11 +101,11 @@ impl Experiment {
     /// The same ring-down by means of as many samples in a row as tell no less of the motion; `None` where that is one,
     /// and for what is no free vibration of a spring.
     ///
-    /// A mean differs from the motion in the middle of its row by x″ h²/24 over a length of time h, which only scales a
-    /// sine, and at a reversal or stop, where the acceleration jumps by Δa, by at most Δa h/8 in a velocity and Δa h²/48
-    /// in a displacement.
+    /// The mean of a sine is that in the middle of its row times sin(nφ)/(n sin φ), 2φ the phase from sample to sample:
+    /// the means are divided by it. At a reversal or stop, where the acceleration jumps by Δa, one mean is off by at
+    /// most Δa h/8 of a velocity and Δa h²/48 of a displacement over a length of time h.
     pub(crate) fn averaged(&self) -> Option<Self> {
-        /// Means in a period (1), at least. Origin: they scale a sine by 2e-6.
+        /// Means in a period (1), at least. Origin: where the period changes by a tenth, sines are off by 3e-7.
         const FEWEST: f64 = 1000.0;
         /// Largest error by a jump of the acceleration over the noise of a mean (1). Origin: chosen; one mean in each
         /// half cycle has it, and levels of a curve then move by a hundredth of their uncertainty.
@@ -132,7 +132,9 @@ impl Experiment {
             return None;
         }
         let count = count as usize;
-        let record = self.record.means(count).ok()?;
+        let half_phase = 0.5 * angular * interval;
+        let of_sine = (count as f64 * half_phase).sin() / (count as f64 * half_phase.sin());
+        let record = self.record.means(count).ok()?.scaled(of_sine.recip(), self.record.unit()).ok()?;
         let whole = |range: &Range<usize>| range.start.div_ceil(count)..range.end / count;
         let kept: Vec<Range<usize>> = self.kept.iter().map(whole).filter(|range| !range.is_empty()).collect();
         let means =
@@ -142,6 +144,7 @@ impl Experiment {
             samples: kept.iter().map(Range::len).sum(),
             noise: record.noise(),
             resolution: None,
+            held_offset: self.summary.held_offset.map(|offset| offset / of_sine),
             ..self.summary.clone()
         };
         (summary.samples >= FEWEST_SAMPLES).then(|| Self { record, kept, shapes, summary, ..self.clone() })

@@ -116,7 +116,14 @@ impl CurveFit {
         let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, means, end)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            let few = Settled::of(&problem.with_records(&thinned).simulated_roughly(), values, scale, MOST_STEPS, end)?;
+            let few = problem.with_records(&thinned);
+            // Means tell more of the levels than a rough simulation does.
+            let few = if means.iter().zip(experiments).all(|(means, one)| means.rows() == one.rows()) {
+                few.simulated_roughly()
+            } else {
+                few
+            };
+            let few = Settled::of(&few, values, scale, MOST_STEPS, end)?;
             // What does not settle with few samples does not with all of them.
             if !few.has_ended {
                 return Err(not_settled());
