@@ -30,6 +30,8 @@ pub enum Source {
     Timing,
     /// The steadiness of the friction that was declared.
     Steadiness,
+    /// The smoothness that a friction curve is given beforehand.
+    Smoothness,
     /// Noise of a motion that was measured beside a force, and its averaging.
     Motion,
     /// Laws that the records do not exclude, and that would give another value.
@@ -49,6 +51,7 @@ impl fmt::Display for Source {
             Self::Clock => "clock of the record",
             Self::Timing => "time of the pulse",
             Self::Steadiness => "steadiness of the friction",
+            Self::Smoothness => "smoothness of the curve",
             Self::Motion => "noise of the motion",
             Self::OtherLaws => "laws that are not excluded",
         })

@@ -17,6 +17,7 @@ use crate::friction_curve::levels::{KNOTS, LEVELS, Levels, TOP_SPEED, weights};
 use crate::friction_curve::likelihood::{Likelihood, Linearised};
 use crate::friction_curve::mixture::{Posterior, Prior};
 use crate::friction_curve::rules::{ASTRAY, MOST_ASTRAY, MOST_SAMPLES, MOST_STEPS, SAMPLES_PER_PERIOD, SETTLED};
+use crate::friction_curve::sources::Sources;
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
 use crate::quantities::rows::Place;
@@ -30,6 +31,7 @@ pub(super) struct CurveFit {
     /// Friction in which the posterior is relative.
     pub(super) scale: f64,
     pub(super) posterior: Posterior,
+    pub(super) sources: Sources,
     /// ν of the noise (1).
     pub(super) freedom: f64,
     /// f₀ (Hz); 0 without a spring.
@@ -141,6 +143,7 @@ impl CurveFit {
         Ok(Self {
             top,
             scale,
+            sources: Sources::of(&posterior, &likelihood, scale),
             posterior,
             freedom: likelihood.freedom,
             frequency: problem.table.shared(Place::Frequency).map_or(0.0, |index| values[index]),

@@ -7,6 +7,7 @@ use std::fmt;
 use fmm_fit::FTest;
 use fmm_model::Rounded;
 
+use crate::finding::Source;
 use crate::friction_curve::mixture::moments;
 
 /// Friction at one speed, or in the mean over a path: a number of a [`FrictionCurve`](crate::FrictionCurve).
@@ -22,6 +23,8 @@ pub struct FrictionLevel {
     unit: String,
     value: f64,
     uncertainty: f64,
+    /// Standard uncertainty by each source.
+    contributions: Vec<(Source, f64)>,
 }
 
 /// Deviations of a part beyond which it is left out of a search for a quantile (1).
@@ -31,9 +34,15 @@ impl FrictionLevel {
     /// Level as a mixture of these `parts` in `unit`, each of Student's t with `freedom`.
     pub(super) fn new(parts: &[(f64, f64, f64)], freedom: f64, unit: String) -> Self {
         let parts = gathered(parts);
-        let mut level = Self { value: 0.0, uncertainty: 0.0, parts, freedom, unit };
+        let mut level = Self { value: 0.0, uncertainty: 0.0, contributions: Vec::new(), parts, freedom, unit };
         (level.value, level.uncertainty) = level.moments_above_zero();
         level
+    }
+
+    /// The same with these standard uncertainties by source.
+    pub(super) fn with_sources(mut self, contributions: impl Iterator<Item = (Source, f64)>) -> Self {
+        self.contributions = contributions.filter(|(_, uncertainty)| *uncertainty > 0.0).collect();
+        self
     }
 
     /// Mean of the distribution, in the [unit](Self::unit).
@@ -44,6 +53,15 @@ impl FrictionLevel {
     /// Standard deviation of the distribution, in the [unit](Self::unit).
     pub fn uncertainty(&self) -> f64 {
         self.uncertainty
+    }
+
+    /// Standard uncertainty by each source that has a part in it, in the [unit](Self::unit); the squares sum to that of
+    /// the [uncertainty](Self::uncertainty), or to more where the distribution is cut off at zero.
+    ///
+    /// [`Source::Residuals`] differs from record to record, [`Source::Smoothness`] is alike in all records of one
+    /// curve.
+    pub fn contributions(&self) -> &[(Source, f64)] {
+        &self.contributions
     }
 
     /// Unit of the value, `"1"` for a coefficient.

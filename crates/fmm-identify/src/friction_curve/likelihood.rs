@@ -3,6 +3,7 @@
 use fmm_fit::{EvaluationError, Residuals};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::finding::Source;
 use crate::friction_curve::levels::LEVELS;
 use crate::linear_algebra::{inverse, products};
 use crate::problem::Problem;
@@ -46,6 +47,8 @@ pub(super) struct Likelihood {
     pub(super) freedom: f64,
     /// Variance of the residuals at the best curve.
     pub(super) variance: f64,
+    /// Change of η with each declared value, for one standard uncertainty of it.
+    pub(super) by_declared: Vec<(Source, DVector<f64>)>,
     rest: Cholesky<f64, Dyn>,
     mixed: DMatrix<f64>,
     slope: DVector<f64>,
@@ -182,7 +185,26 @@ impl Linearised {
         let levels = DVector::from_fn(LEVELS, |i, _| p[self.places[first + i]]);
         let information = slope.rows(first, LEVELS) - mixed.transpose() * rest.solve(&rest_slope) + &of_levels * levels;
         let freedom = (freedom / inflation.max(1.0)).max(1.5);
-        Some(Likelihood { precision: of_levels, information, freedom, variance, rest, mixed, slope: rest_slope })
+        let by_declared = self.by_declared(problem, &rest, &mixed).collect();
+        let (precision, slope) = (of_levels, rest_slope);
+        Some(Likelihood { precision, information, freedom, variance, by_declared, rest, mixed, slope })
+    }
+}
+
+impl Linearised {
+    /// ∂η/∂x₀ u of each value x₀ that is declared with u: −Λ_bn Λ_nn⁻¹ e/u, with e its place in n.
+    fn by_declared<'a>(
+        &'a self,
+        problem: &'a Problem<'_>,
+        rest: &'a Cholesky<f64, Dyn>,
+        mixed: &'a DMatrix<f64>,
+    ) -> impl Iterator<Item = (Source, DVector<f64>)> + 'a {
+        problem.prior.declared().filter_map(move |(index, source, uncertainty)| {
+            let place = self.places.iter().position(|place| *place == index).filter(|place| *place < mixed.nrows())?;
+            let mut unit = DVector::zeros(mixed.nrows());
+            unit[place] = uncertainty.recip();
+            Some((source, -mixed.tr_mul(&rest.solve(&unit))))
+        })
     }
 }
 

@@ -147,6 +147,20 @@ impl Posterior {
         mean
     }
 
+    /// Covariance of the levels.
+    pub(super) fn covariance(&self) -> DMatrix<f64> {
+        let mean = self.mean();
+        let mut covariance = DMatrix::zeros(LEVELS, LEVELS);
+        for part in &self.parts {
+            let base = &self.bases[part.base];
+            let off = &base.mean + &part.direction * part.amplitude - &mean;
+            let own = &base.spread * base.spread.transpose();
+            let along = &part.direction * part.direction.transpose() * part.variance;
+            covariance += (own + along + &off * off.transpose()) * part.weight;
+        }
+        covariance
+    }
+
     /// Weight, mean and variance in each part of what has these weights over the levels.
     pub(super) fn marginal(&self, weights: &[f64; LEVELS]) -> Vec<(f64, f64, f64)> {
         let weights = DVector::from_column_slice(weights);

@@ -8,6 +8,7 @@ mod mixture;
 pub(crate) mod projection;
 mod report;
 mod rules;
+mod sources;
 
 use std::time::{Duration, Instant};
 
@@ -18,14 +19,16 @@ pub use level::FrictionLevel;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
 use crate::experiment::clock::Clock;
+use crate::finding::Source;
 use crate::friction_curve::fit::CurveFit;
 use crate::friction_curve::levels::{KNOTS, LEVELS, weights};
-use crate::friction_curve::mixture::Posterior;
+use crate::friction_curve::mixture::{Posterior, moments};
 use crate::friction_curve::projection::friction;
 use crate::friction_curve::rules::DRAWS;
+use crate::friction_curve::sources::Sources;
 use crate::identification::Identification;
 use crate::law::naming::Units;
-use crate::machine::{Machine, Scale, Terms};
+use crate::machine::{Known, Machine, Scale, Terms};
 use crate::quantities::table::{Table, mass_of_stiffness};
 
 /// Friction over the speed as ring-downs show it, without a law: the whole resistance to the motion, of the contact and
@@ -77,8 +80,9 @@ pub struct FrictionCurve {
     /// Unit of the curve over that of the fit, and over that of the posterior.
     unit_factor: f64,
     factor: f64,
-    /// Relative standard uncertainty of the factor (1).
-    factor_uncertainty: f64,
+    /// Relative standard uncertainty of the factor by each source (1).
+    of_factor: Vec<(Source, f64)>,
+    sources: Sources,
     freedom: f64,
     path: [f64; LEVELS],
     slowest: f64,
@@ -175,7 +179,8 @@ impl FrictionCurve {
             Scale::Stiffness(_) => clock.order,
             _ => clock.order - 2.0,
         } * clock.uncertainty;
-        let (meaning, factor, relative) = scale(machine, &units, fit.frequency);
+        let (meaning, factor, mut of_factor) = scale(machine, &units, fit.frequency);
+        of_factor.extend([(Source::Gain, gain), (Source::Clock, by_clock)]);
         let unit = match meaning {
             Meaning::Coefficient => Unit::default().to_string(),
             Meaning::Force => units.with_forces().map_or_else(|| "N".to_owned(), |units| units.force.to_string()),
@@ -193,7 +198,8 @@ impl FrictionCurve {
             speed_unit: units.velocity().to_string(),
             unit_factor: factor,
             factor: factor * fit.scale,
-            factor_uncertainty: relative.hypot(gain).hypot(by_clock),
+            of_factor,
+            sources: fit.sources,
             posterior: fit.posterior,
             freedom: fit.freedom,
             path: fit.path,
@@ -231,6 +237,14 @@ impl FrictionCurve {
         (0.0..=top).contains(&speed).then(|| self.level(&weights(speed / top)))
     }
 
+    /// Value at `speed` of a curve that was kept as `values` at its [speeds](Self::speeds), by the same cubics; `None`
+    /// above the top speed, or for another number of values than of levels.
+    pub fn through(speeds: &[f64], values: &[f64], speed: f64) -> Option<f64> {
+        let top = *speeds.last().filter(|_| values.len() == LEVELS)?;
+        let weighted = || weights(speed / top).iter().zip(values).map(|(weight, value)| weight * value).sum();
+        (0.0..=top).contains(&speed).then(weighted)
+    }
+
     /// Friction at rest, as the lowest speeds tell it.
     pub fn at_rest(&self) -> FrictionLevel {
         self.level(&unit_weights(0))
@@ -256,7 +270,7 @@ impl FrictionCurve {
             return None;
         }
         let levels = self.levels();
-        let by_factor: f64 = self.factor_uncertainty.powi(2);
+        let by_factor = self.square_of_factor();
         let (mean, mut spread) = (self.posterior.mean(), self.posterior.deviations());
         let floor = |value: f64| value.max(0.0);
         for deviation in &mut spread {
@@ -317,13 +331,23 @@ impl FrictionCurve {
     }
 
     fn level(&self, weights: &[f64; LEVELS]) -> FrictionLevel {
-        let square = self.factor_uncertainty.powi(2);
+        let square = self.square_of_factor();
         let part = |(weight, mean, variance): (f64, f64, f64)| {
             let mean = mean * self.factor;
             (weight, mean, variance * self.factor * self.factor + square * mean * mean)
         };
-        let parts: Vec<_> = self.posterior.marginal(weights).into_iter().map(part).collect();
-        FrictionLevel::new(&parts, self.freedom, self.unit.clone())
+        let own = self.posterior.marginal(weights);
+        let (mean, deviation) = moments(&own);
+        let parts: Vec<_> = own.into_iter().map(part).collect();
+        let of_factor = self.of_factor.iter().map(|(source, relative)| (*source, (relative * mean).powi(2)));
+        let variances = self.sources.parts(weights, deviation * deviation).into_iter().chain(of_factor);
+        let contributions = variances.map(|(source, variance)| (source, self.factor * variance.sqrt()));
+        FrictionLevel::new(&parts, self.freedom, self.unit.clone()).with_sources(contributions)
+    }
+
+    /// Square of the relative standard uncertainty of the factor (1).
+    fn square_of_factor(&self) -> f64 {
+        self.of_factor.iter().map(|(_, relative)| relative * relative).sum()
     }
 }
 
@@ -332,26 +356,27 @@ fn unit_weights(i: usize) -> [f64; LEVELS] {
     std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 })
 }
 
-/// Meaning of the curve, its unit over that of the problem, and the relative standard uncertainty of that factor.
-fn scale(machine: &Machine, units: &Units, frequency: f64) -> (Meaning, f64, f64) {
+/// Meaning of the curve, its unit over that of the problem, and the relative standard uncertainties of that factor.
+fn scale(machine: &Machine, units: &Units, frequency: f64) -> (Meaning, f64, Vec<(Source, f64)>) {
+    let relative = |source: Source, known: Known| (source, known.uncertainty() / known.value());
     let mass = match machine.scale() {
-        Scale::Mass(mass) => Some((mass.value(), mass.uncertainty() / mass.value())),
+        Scale::Mass(mass) => Some((mass.value(), vec![relative(Source::Mass, mass)])),
         Scale::Stiffness(stiffness) => {
             let mass = mass_of_stiffness(stiffness.value(), frequency);
-            Some((mass, stiffness.uncertainty() / stiffness.value()))
+            Some((mass, vec![relative(Source::Stiffness, stiffness)]))
         }
         // The problem has forces, with mass and stiffness among its own quantities.
-        Scale::MassAndStiffness(..) => Some((1.0, 0.0)),
+        Scale::MassAndStiffness(..) => Some((1.0, Vec::new())),
         _ => None,
     };
-    let Some((force, relative)) = mass.filter(|_| units.with_forces().is_some()) else {
-        return (Meaning::PerMass, 1.0, 0.0);
+    let Some((force, mut of_factor)) = mass.filter(|_| units.with_forces().is_some()) else {
+        return (Meaning::PerMass, 1.0, Vec::new());
     };
     match machine.normal_load().filter(|_| units.is_metric()) {
         Some(load) => {
-            let by_load = load.uncertainty() / load.value();
-            (Meaning::Coefficient, force / load.value(), relative.hypot(by_load))
+            of_factor.push(relative(Source::NormalLoad, load));
+            (Meaning::Coefficient, force / load.value(), of_factor)
         }
-        None => (Meaning::Force, force, relative),
+        None => (Meaning::Force, force, of_factor),
     }
 }

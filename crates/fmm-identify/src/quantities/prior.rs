@@ -49,6 +49,12 @@ impl Prior {
         self.indices.len()
     }
 
+    /// Index, source and standard uncertainty of each quantity.
+    pub(crate) fn declared(&self) -> impl Iterator<Item = (usize, Source, f64)> {
+        let count = self.len();
+        (0..count).map(move |at| (self.indices[at], self.sources[at], self.covariance[at * (count + 1)].sqrt()))
+    }
+
     /// V⁻¹, row by row.
     pub(crate) fn precision(&self) -> Vec<f64> {
         let count = self.len();

@@ -64,4 +64,29 @@ impl Warning {
             _ => Severity::Remark,
         }
     }
+
+    /// True for a doubt that friction over the speed without a law does not share: one of the law that was fitted, of
+    /// what its residuals ask for, or of a drift, which stands beside the curve as well. The curve
+    /// [judges](crate::FrictionCurve::limits) its own residuals.
+    ///
+    /// ```
+    /// use fmm_identify::Warning;
+    ///
+    /// assert!(Warning::Undecided.spares_curve() && !Warning::NoDecay.spares_curve());
+    /// ```
+    pub const fn spares_curve(&self) -> bool {
+        matches!(
+            self,
+            Self::StructuredResiduals { .. }
+                | Self::WorseThanNone { .. }
+                | Self::OtherPredicts { .. }
+                | Self::NotConverged { .. }
+                | Self::NegativeDamping { .. }
+                | Self::FrictionChanges { .. }
+                | Self::FrictionOverPosition { .. }
+                | Self::GrowingNoise { .. }
+                | Self::Drift
+                | Self::Undecided
+        )
+    }
 }

@@ -1,10 +1,10 @@
 //! Friction over speed without a law, from records whose curve is known.
 
-use fmm_friction::{CoulombViscous, ExponentialPair, LawFamily, RegularisedStribeck};
-use fmm_identify::{Comparison, Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation, search};
+use fmm_friction::{CoulombViscous, ExponentialPair, LawFamily, RegularisedStribeck, Stribeck};
+use fmm_identify::{Comparison, Experiment, FrictionCurve, FrictionLevel, Known, Machine, Preparation, Source, search};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, Exact, Sampling, Scenario};
+use fmm_sim::{Engine, Exact, RungeKutta, Sampling, Scenario};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -92,6 +92,62 @@ fn declared_damping_is_taken_out() {
     }
     let top = curve.speeds()[14];
     assert!(curve.at_top_speed().uncertainty() > 0.009 * top, "{}", curve.at_top_speed());
+    let by_damping = contribution(&curve.at_top_speed(), Source::Damping);
+    assert!((by_damping / (0.01 * top) - 1.0).abs() < 0.1, "{by_damping} of {}", 0.01 * top);
+}
+
+fn contribution(level: &FrictionLevel, source: Source) -> f64 {
+    level.contributions().iter().filter(|(own, _)| *own == source).fold(0.0, |u: f64, (_, part)| u.hypot(*part))
+}
+
+/// What is declared has its relative part of each level, all parts make the uncertainty, and a curve that is kept as
+/// its levels is the same curve.
+#[test]
+fn an_uncertainty_has_its_sources() {
+    let known = |value: f64, relative: f64| Known::new(value, relative * value).unwrap();
+    let machine = Machine::of_mass(known(10.0, 2e-3)).unwrap().with_normal_load(known(20.0, 5e-3)).unwrap();
+    let record = ring_down(noisy(&velocity(0.3, 400.0), 1e-3, 6), 400.0, "m/s");
+    let curve = FrictionCurve::of(&machine, &[record]).unwrap();
+    let values: Vec<f64> = curve.levels().iter().map(FrictionLevel::value).collect();
+    for level in curve.levels().iter().chain([&curve.mean_over_path()]) {
+        for (source, relative) in [(Source::Mass, 2e-3), (Source::NormalLoad, 5e-3)] {
+            let part = contribution(level, source) / (relative * level.value());
+            assert!((part - 1.0).abs() < 1e-2, "{source}: {part} in {level}");
+        }
+        let all = level.contributions().iter().fold(0.0, |u: f64, (_, part)| u.hypot(*part));
+        assert!((all / level.uncertainty() - 1.0).abs() < 1e-3, "{all} in {level}");
+    }
+    for speed in [0.0, 0.003, 0.05, 0.17, curve.speeds()[14]] {
+        let kept = FrictionCurve::through(curve.speeds(), &values, speed).unwrap();
+        assert!((kept / curve.at(speed).unwrap().value() - 1.0).abs() < 1e-6, "at {speed}");
+    }
+    assert_eq!(FrictionCurve::through(curve.speeds(), &values, 1.0), None);
+    assert_eq!(FrictionCurve::through(curve.speeds(), &values[1..], 0.05), None);
+}
+
+/// From record to record a level scatters by the part of the residuals, and by less than its whole uncertainty.
+#[test]
+fn levels_scatter_by_the_part_of_the_residuals() {
+    const SEEDS: u64 = 30;
+    let law = Stribeck::new(0.3, 0.42, 0.04, 2.0, 0.3).unwrap();
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+    let motion = RungeKutta::new(1e-12)
+        .unwrap()
+        .run(&scenario.starting_at(0.02, 0.0).unwrap(), &Sampling::uniform(1.0 / 300.0, 750).unwrap())
+        .unwrap();
+    let clean = motion.velocity().values();
+    let curves: Vec<FrictionCurve> = (0..SEEDS).map(|seed| curve(noisy(clean, 1e-3, 100 + seed), 300.0)).collect();
+    for speed in [0.01, 0.03, 0.06, 0.12] {
+        let levels: Vec<FrictionLevel> = curves.iter().map(|curve| curve.at(speed).unwrap()).collect();
+        let count = levels.len() as f64;
+        let mean = levels.iter().map(FrictionLevel::value).sum::<f64>() / count;
+        let scatter = levels.iter().map(|level| (level.value() - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let square = |of: &dyn Fn(&FrictionLevel) -> f64| levels.iter().map(|one| of(one).powi(2)).sum::<f64>() / count;
+        let ratio = scatter / square(&|level| contribution(level, Source::Residuals));
+        // Three standard deviations of a variance of 29 degrees of freedom, and what one linearisation leaves out.
+        assert!((0.4..2.0).contains(&ratio), "{ratio} at {speed} m/s");
+        assert!(scatter < square(&FrictionLevel::uncertainty), "at {speed} m/s");
+    }
 }
 
 /// Two ring-downs share the curve: it reaches to the larger of their speeds and is known better.
