@@ -136,18 +136,28 @@ fn levels_scatter_by_the_part_of_the_residuals() {
         .run(&scenario.starting_at(0.02, 0.0).unwrap(), &Sampling::uniform(1.0 / 300.0, 750).unwrap())
         .unwrap();
     let clean = motion.velocity().values();
-    let curves: Vec<FrictionCurve> = (0..SEEDS).map(|seed| curve(noisy(clean, 1e-3, 100 + seed), 300.0)).collect();
-    for speed in [0.01, 0.03, 0.06, 0.12] {
+    let curve = |seed: u64| {
+        let record = ring_down(noisy(clean, 1e-3, 100 + seed), 300.0, "m/s");
+        // A few do not settle.
+        FrictionCurve::of(&Machine::per_unit_mass(), &[record]).ok()
+    };
+    let curves: Vec<FrictionCurve> = (0..SEEDS).filter_map(curve).collect();
+    assert!(curves.len() > 24, "{}", curves.len());
+    let speeds = [0.01, 0.03, 0.06, 0.12];
+    let (mut by_residuals, mut by_all) = (0.0, 0.0);
+    for speed in speeds {
         let levels: Vec<FrictionLevel> = curves.iter().map(|curve| curve.at(speed).unwrap()).collect();
         let count = levels.len() as f64;
         let mean = levels.iter().map(FrictionLevel::value).sum::<f64>() / count;
         let scatter = levels.iter().map(|level| (level.value() - mean).powi(2)).sum::<f64>() / (count - 1.0);
         let square = |of: &dyn Fn(&FrictionLevel) -> f64| levels.iter().map(|one| of(one).powi(2)).sum::<f64>() / count;
         let ratio = scatter / square(&|level| contribution(level, Source::Residuals));
-        // Three standard deviations of a variance of 29 degrees of freedom, and what one linearisation leaves out.
+        // Three standard deviations of a variance of some 27 degrees of freedom, and what a linearisation leaves out.
         assert!((0.4..2.0).contains(&ratio), "{ratio} at {speed} m/s");
-        assert!(scatter < square(&FrictionLevel::uncertainty), "at {speed} m/s");
+        by_residuals += ratio / speeds.len() as f64;
+        by_all += scatter / square(&FrictionLevel::uncertainty) / speeds.len() as f64;
     }
+    assert!((0.7..1.4).contains(&by_residuals) && by_all < 0.9, "{by_residuals}, {by_all}");
 }
 
 /// Two ring-downs share the curve: it reaches to the larger of their speeds and is known better.
