@@ -44,6 +44,10 @@ pub enum Role {
     Measured,
     /// A fitted curve.
     Fitted,
+    /// One of many measured curves.
+    Each,
+    /// Mean of many curves.
+    Mean,
     /// Residuals of a fit.
     Residual,
     /// A second model or a truth to compare with.
@@ -62,6 +66,8 @@ impl Role {
         match self {
             Self::Measured => (MEASURED, Some(2.4)),
             Self::Fitted => (FITTED, Some(1.1)),
+            Self::Each => (MEASURED, Some(0.7)),
+            Self::Mean => (FITTED, Some(2.4)),
             Self::Residual => (RESIDUAL, Some(0.8)),
             Self::Reference => (RESIDUAL, Some(1.4)),
             Self::Points => (MEASURED, None),

@@ -19,7 +19,7 @@ use crate::refusal::{Kind, placed};
 use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Drive, Experiment, FrictionCurve, ImpactTrial, Preparation};
+use fmm_identify::{Candidate, Comparison, Drive, Experiment, ImpactTrial, Preparation};
 use fmm_record::{Column, Quantity, Record};
 use serde::Serialize;
 
@@ -254,18 +254,8 @@ pub(crate) fn identify(arguments: &Arguments, command: &str, host: &Host<'_>) ->
     let begun = Instant::now();
     let mut found = found(arguments, &arguments.question.candidates(host)?, command, host)?;
     let curve = || {
-        let (preferred, left) = (found.comparison.preferred(), || arguments.question.time_left(begun));
-        let curve = match left() {
-            Some(limit) => FrictionCurve::beside_within(preferred, &found.decays, limit),
-            None => FrictionCurve::beside(preferred, &found.decays),
-        };
-        match curve {
-            Ok(curve) => Curve::Found(Box::new(curve)),
-            Err(_) if left().is_some_and(|left| left.is_zero()) => {
-                Curve::Missing { missing: "the time limit is over".to_owned() }
-            }
-            Err(error) => Curve::Missing { missing: error.to_string() },
-        }
+        let curve = arguments.question.friction_curve(found.comparison.preferred(), &found.decays, begun);
+        curve.map_or_else(|missing| Curve::Missing { missing }, |curve| Curve::Found(Box::new(curve)))
     };
     found.curve = Some(host.while_busy("friction over speed", curve)?);
     with_posterior(found, arguments, host)

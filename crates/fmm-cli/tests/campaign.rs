@@ -1,14 +1,21 @@
 //! The program on a folder of ring-downs, killed and resumed, and campaigns whose truth is known.
 //!
+//! `FMM_CURVE_CAMPAIGNS=200 cargo test --release -p fmm-cli --test campaign curves -- --nocapture` makes as many campaigns
+//! with curves, and says how often their means hold.
+//!
 //! `FMM_CAMPAIGN_FILES=3000 cargo test --release -p fmm-cli --test campaign -- --nocapture` makes as many files and
 //! says how long they take.
 
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use fmm_friction::{SlidingLaw, Stribeck};
+use fmm_model::Oscillator;
+use fmm_sim::{Engine, RungeKutta, Sampling, Scenario};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -101,7 +108,14 @@ fn killed_and_resumed() {
     write_files(&data, count);
     let batch = |out: &Path| {
         let mut command = program();
-        command.arg("batch").arg(&data).arg("--out").arg(out).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+            .arg("batch")
+            .arg(&data)
+            .arg("--no-curves")
+            .arg("--out")
+            .arg(out)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
         command
     };
     let begun = Instant::now();
@@ -256,7 +270,7 @@ fn intervals_of_campaigns_hold() {
         let done = program()
             .args(["batch", "--manifest"])
             .arg(home.join("runs.csv"))
-            .args(["--json", "--count-doubtful", "--", "--rate", "100"])
+            .args(["--json", "--count-doubtful", "--no-curves", "--", "--rate", "100"])
             .output()
             .unwrap();
         let document: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
@@ -278,4 +292,115 @@ fn intervals_of_campaigns_hold() {
     // uncertainties say.
     assert!((0.92..0.98).contains(&held) && naive < 0.8, "{held}, {naive}");
     assert!((0.91..0.99).contains(&proportional), "{proportional}");
+}
+
+/// What campaigns of one kind say of a level of their pooled curve.
+#[derive(Debug, Default)]
+struct Tally {
+    campaigns: u32,
+    held: u32,
+    /// Campaigns whose records are said to differ (p < 0.05).
+    differ: u32,
+    /// Sums of the squares of τ and of u, over those of the level.
+    spread: f64,
+    square: f64,
+}
+
+/// Velocity (m/s) of a machine of 1 kg and 2 Hz under 10 N by a falling friction times `factor`, 150 samples a second.
+fn falling(law: [f64; 5], factor: f64, release: f64) -> Vec<f64> {
+    let [sliding, breakaway, fall, exponent, viscous] = law;
+    let law = Stribeck::new(factor * sliding, factor * breakaway, fall, exponent, factor * viscous).unwrap();
+    let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 10.0).unwrap();
+    let scenario = scenario.starting_at(release, 0.0).unwrap();
+    let motion = RungeKutta::new(1e-10).unwrap().run(&scenario, &Sampling::uniform(1.0 / 150.0, 500).unwrap()).unwrap();
+    motion.velocity().values().to_vec()
+}
+
+/// Eight releases of a machine whose friction falls with the speed, with a coefficient that differs by 3 % from run to
+/// run or not at all, and a load whose error all runs share: the interval of the pooled mean holds the true curve at
+/// each speed, the spread is found, and none is where there is none.
+#[test]
+fn curves_of_campaigns_hold() {
+    const RUNS: usize = 8;
+    const SPREAD: f64 = 0.03;
+    let campaigns: u64 = std::env::var("FMM_CURVE_CAMPAIGNS").map_or(24, |count| count.parse().unwrap());
+    let home = folder("curves");
+    let mut tallies: BTreeMap<(bool, String), Tally> = BTreeMap::new();
+    let mut lost = 0;
+    for seed in 0..campaigns {
+        let mut draw = Draw(ChaCha8Rng::seed_from_u64(7_000 + seed));
+        let differs = seed % 2 == 0;
+        let sliding = draw.between(0.008, 0.014);
+        let law = [
+            sliding,
+            sliding * draw.between(1.1, 1.6),
+            draw.between(0.02, 0.08),
+            draw.between(1.0, 2.0),
+            sliding * draw.between(0.0, 2.0),
+        ];
+        let load = 10.0 * (1.0 + 0.01 * draw.normal());
+        let mut manifest = "file,mass,normal_load,normal_load_u\n".to_owned();
+        for run in 0..RUNS {
+            let factor = 1.0 + if differs { SPREAD * draw.normal() } else { 0.0 };
+            let release = draw.between(0.016, 0.024);
+            let mut text = "v [m/s]\n".to_owned();
+            for value in falling(law, factor, release) {
+                writeln!(text, "{:.7}", value + 1e-3 * draw.normal()).unwrap();
+            }
+            std::fs::write(home.join(format!("run_{run}.csv")), text).unwrap();
+            writeln!(manifest, "run_{run}.csv,1,{load},0.1").unwrap();
+        }
+        std::fs::write(home.join("runs.csv"), manifest).unwrap();
+        let done = program()
+            .args(["batch", "--manifest"])
+            .arg(home.join("runs.csv"))
+            .args(["--json", "--", "--rate", "150"])
+            .output()
+            .unwrap();
+        let document: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+        let pooled = &document["summary"]["friction_curve"];
+        lost += pooled["left_out"].as_array().unwrap().len();
+        let curve = &pooled["curves"][0];
+        let truth = Stribeck::new(law[0], law[1], law[2], law[3], law[4]).unwrap();
+        for level in curve["levels"].as_array().unwrap() {
+            let number = |name: &str| level[name].as_f64().unwrap();
+            let (place, speed) = match (level["speed"].as_f64(), level["name"].as_str().unwrap()) {
+                (Some(speed), _) => (format!("{speed} m/s"), speed),
+                (None, "friction_at_rest") => ("at rest".to_owned(), 0.0),
+                _ => continue,
+            };
+            let truth: f64 = truth.coefficient(speed);
+            let end = |place: usize| level["interval_95"][place].as_f64().unwrap();
+            let tally = tallies.entry((differs, place)).or_default();
+            tally.campaigns += 1;
+            tally.held += u32::from(end(0) <= truth && truth <= end(1));
+            tally.differ += u32::from(number("p") < 0.05);
+            tally.spread += (number("between") / truth).powi(2);
+            tally.square += (number("u") / truth).powi(2);
+        }
+    }
+    println!("{lost} of {} curves do not count", campaigns * RUNS as u64);
+    println!("spread  level  campaigns  held (%)  said to differ (%)  τ (%)  u (%)");
+    let (mut held, mut all) = (0, 0);
+    for ((differs, place), tally) in &tallies {
+        let count = f64::from(tally.campaigns);
+        let (share, differ) = (f64::from(tally.held) / count, f64::from(tally.differ) / count);
+        let [spread, u] = [tally.spread, tally.square].map(|sum| (sum / count).sqrt());
+        println!(
+            "{:>4}  {place:>10}  {count:>4}  {:>6.1}  {:>6.1}  {:>6.2}  {:>6.2}",
+            if *differs { SPREAD } else { 0.0 },
+            100.0 * share,
+            100.0 * differ,
+            100.0 * spread,
+            100.0 * u
+        );
+        (held, all) = (held + tally.held, all + tally.campaigns);
+        // Near rest a few curves are far off, of which more is said on the page of the curve.
+        if place != "at rest" && tally.campaigns >= 10 {
+            assert!(share >= 0.75, "{place}: {share}");
+            assert!(!differs || (0.6..1.5).contains(&(spread / SPREAD)), "{place}: {spread}");
+            assert!(*differs || differ <= 0.4, "{place}: {differ}");
+        }
+    }
+    assert!(100 * held >= 93 * all, "{held} of {all}");
 }

@@ -25,6 +25,9 @@ pub(crate) struct Campaign {
     pub(crate) group: Option<String>,
     /// Entries of the manifest for the record sheet.
     pub(crate) sheet: Option<Sheet>,
+    /// True if no friction curves are fitted.
+    #[serde(default)]
+    pub(crate) without_curves: bool,
     pub(crate) entries: Vec<Entry>,
 }
 
@@ -70,7 +73,8 @@ impl Campaign {
             return Err("there is no record in these folders".into());
         }
         let entry = |file| Entry { file, ..Entry::default() };
-        Ok(Self { options, group: None, sheet: None, entries: files.into_iter().map(entry).collect() })
+        let entries = files.into_iter().map(entry).collect();
+        Ok(Self { options, group: None, sheet: None, without_curves: false, entries })
     }
 
     /// Campaign of a manifest; a `group` goes before the one that it names.
@@ -109,7 +113,8 @@ impl Campaign {
             entry
         };
         let entries = manifest.records.iter().map(entry).collect();
-        let campaign = Self { options, group: group.or(manifest.group), sheet: manifest.sheet, entries };
+        let (group, sheet) = (group.or(manifest.group), manifest.sheet);
+        let campaign = Self { options, group, sheet, without_curves: false, entries };
         if let Some(column) = &campaign.group {
             campaign.require_column(column).map_err(wrong)?;
         }
@@ -151,7 +156,8 @@ impl Campaign {
         }
         let is_same = |kept: Self| {
             let files: BTreeSet<&PathBuf> = kept.entries.iter().map(|entry| &entry.file).collect();
-            kept.options == self.options && self.entries.iter().any(|entry| files.contains(&entry.file))
+            (&kept.options, kept.without_curves) == (&self.options, self.without_curves)
+                && self.entries.iter().any(|entry| files.contains(&entry.file))
         };
         if kept.is_none_or(is_same) {
             return Ok(files::write(&path, &serde_json::to_string_pretty(self)?)?);

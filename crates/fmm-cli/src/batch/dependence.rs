@@ -74,9 +74,19 @@ pub(super) fn number_in(row: &Row, column: &str) -> Option<f64> {
     cell.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
+/// True for a record under a load (N) between these ends.
+pub(super) fn is_under(row: &Row, (low, high): (f64, f64)) -> bool {
+    number_in(row, LOAD).is_some_and(|load| (low..=high).contains(&load))
+}
+
+/// The normal load (N) of a record.
+pub(super) fn load_of(row: &Row) -> Option<Estimated> {
+    Some(Estimated::new(number_in(row, LOAD)?, number_in(row, "normal_load_u").unwrap_or(0.0)))
+}
+
 /// All dependences that the records can show, and those on `columns`.
 pub(super) fn dependences(rows: &[&Row], columns: &[String]) -> Vec<Dependence> {
-    let load = over_load(rows);
+    let load = force_over_load(rows);
     let amplitude = over_amplitude(rows);
     let columns = columns.iter().map(|column| {
         let place = |row: &Row| number_in(row, column);
@@ -99,19 +109,20 @@ fn estimated(told: &Told) -> Option<Estimated> {
     Some(Estimated::new(told.value, told.u.filter(|u| *u > 0.0)?))
 }
 
-/// Friction force against the load, where records state different ones.
-fn over_load(rows: &[&Row]) -> Option<Dependence> {
+/// Friction force of the law against the load, where records state different ones.
+fn force_over_load(rows: &[&Row]) -> Option<Dependence> {
     let quantity = quantity(rows, "friction_force")?;
-    let run = |row: &&Row| {
-        let load = Estimated::new(number_in(row, LOAD)?, number_in(row, "normal_load_u").unwrap_or(0.0));
-        Some((load, estimated(row.told(quantity)?)?))
-    };
-    let runs: Vec<(Estimated, Estimated)> = rows.iter().filter_map(run).collect();
+    let run = |row: &&Row| Some((load_of(row)?, estimated(row.told(quantity)?)?));
+    over_load(quantity, &rows.iter().filter_map(run).collect::<Vec<_>>())
+}
+
+/// Friction force of runs, each with its load, against the load; `None` where it does not differ.
+pub(super) fn over_load(quantity: (&str, &str), runs: &[(Estimated, Estimated)]) -> Option<Dependence> {
     let (first, _) = runs.first()?;
     if runs.iter().all(|(load, _)| load.value == first.value) {
         return None;
     }
-    let found = FrictionOverLoad::of(&runs);
+    let found = FrictionOverLoad::of(runs);
     let line = found.as_ref().ok().map(|found| {
         let (intercept, slope) = (found.intercept(), found.coefficient());
         let at = |load: f64| {

@@ -9,7 +9,7 @@ use fmm_identify::Experiment;
 use serde::Serialize;
 
 use super::campaign::Campaign;
-use super::row::{Found, Row, Told, told};
+use super::row::{Found, Row, Told, tally, told};
 use crate::host::Host;
 use crate::input::Question;
 
@@ -72,13 +72,7 @@ impl Together {
 
 /// The law of all records.
 fn one_law<'a>(counted: impl Iterator<Item = &'a Found>) -> Result<&'a str, String> {
-    let mut laws: Vec<(&str, usize)> = Vec::new();
-    for found in counted {
-        match laws.iter_mut().find(|(law, _)| *law == found.law) {
-            Some((_, count)) => *count += 1,
-            None => laws.push((&found.law, 1)),
-        }
-    }
+    let laws = tally(counted.map(|found| found.law.as_str()));
     match laws.as_slice() {
         [(law, count)] if *count > 1 => Ok(law),
         [] | [_] => Err("a joint fit needs two identified records or more that count".to_owned()),

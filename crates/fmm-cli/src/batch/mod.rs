@@ -5,11 +5,13 @@
 //! resumed at any time. Copies of a record are found when all rows are there.
 
 mod campaign;
+mod curve;
 mod dependence;
 mod joint;
 mod linked;
 mod manifest;
 mod page;
+mod pooled;
 mod row;
 mod shared;
 mod sheet;
@@ -67,6 +69,9 @@ pub(crate) struct Arguments {
     /// Search a law for each record, as `fmm identify` does, instead of fitting coulomb_viscous to all
     #[arg(long)]
     search: bool,
+    /// Leave out the friction curve of each record, friction over the speed without a law, which takes most of the time
+    #[arg(long)]
+    no_curves: bool,
     /// Records at a time; as many as there are processors unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -204,7 +209,7 @@ pub(crate) fn batch(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn An
     if !arguments.search && !options.iter().any(|option| option == "--law" || option.starts_with("--law=")) {
         options.extend(["--law".to_owned(), LAW.to_owned()]);
     }
-    let campaign = match (&arguments.manifest, &arguments.group) {
+    let mut campaign = match (&arguments.manifest, &arguments.group) {
         (Some(manifest), group) => Campaign::of_manifest(manifest, options, group.clone(), host)?,
         (None, Some(group)) => {
             let what = "a manifest says which records belong together, and none is given; list them in one, and give \
@@ -213,6 +218,7 @@ pub(crate) fn batch(arguments: &Arguments, host: &Host<'_>) -> Result<Box<dyn An
         }
         (None, None) => Campaign::of_files(&arguments.records, options)?,
     };
+    campaign.without_curves = arguments.no_curves;
     arguments.asked.check(&campaign)?;
     // As many as there are processors, to rayon.
     let jobs = arguments.jobs.map_or(0, usize::from);

@@ -6,8 +6,9 @@ use std::path::Path;
 use fmm_model::Rounded;
 
 use super::campaign::Campaign;
-use super::dependence::{Dependence, FRICTION, LOAD, Line, number_in};
+use super::dependence::{Dependence, FRICTION, Line, is_under};
 use super::manifest::EXCLUDE;
+use super::pooled;
 use super::row::{Outcome, Row, Stated, quantities};
 use super::sheet::{Field, citation};
 use super::summary::{Quantity, Summary};
@@ -56,7 +57,7 @@ pub(crate) fn page(campaign: &Campaign, rows: &[Row], summary: &Summary) -> Stri
         budget(summary),
         statements(shown()),
         together(summary),
-        pictures.collect::<String>(),
+        pictures.collect::<String>() + &summary.friction_curve.as_ref().map_or_else(String::new, pooled::section),
         summary.joint.as_ref().map_or_else(String::new, |_| section("Joint fit", &paragraphs(joint_lines(summary)))),
         [dependences(summary), sheet(summary)].concat(),
         records(campaign, rows),
@@ -323,11 +324,8 @@ fn with_records(panel: Panel, points: &[(f64, f64, f64)]) -> Panel {
 
 /// Each record's value, and the consensus with its interval.
 fn picture(rows: &[Row], summary: &Summary, quantity: &Quantity, index: usize) -> String {
-    let is_under = |row: &Row| match quantity.loads {
-        None => true,
-        Some((low, high)) => number_in(row, LOAD).is_some_and(|load| (low..=high).contains(&load)),
-    };
-    let told = rows.iter().enumerate().filter(|(_, row)| is_under(row)).filter_map(|(place, row)| {
+    let belongs = |row: &Row| quantity.loads.is_none_or(|loads| is_under(row, loads));
+    let told = rows.iter().enumerate().filter(|(_, row)| belongs(row)).filter_map(|(place, row)| {
         let value = row.told((&quantity.name, &quantity.unit))?;
         Some(((place as f64 + 1.0, value.value, value.u?), row.counts(summary.counts_doubtful)))
     });

@@ -5,6 +5,7 @@ use std::error::Error;
 use std::fmt::Display;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use fmm_fit::EstimateStatus;
 use fmm_identify::{Finding, Identification, Origin, Severity, Source};
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::campaign::{Campaign, Entry, RecordOptions};
+use super::curve::RowCurve;
 use crate::files;
 use crate::host::Host;
 
@@ -80,6 +82,8 @@ pub(crate) struct Found {
     pub(crate) warnings: Vec<String>,
     /// Those of the warnings that doubt the fit.
     pub(crate) doubts: Vec<String>,
+    /// Friction over the speed, no law assumed, or why there is none.
+    pub(crate) friction_curve: Outcome<RowCurve>,
     /// SHA-256 of the samples as they were read, by which copies are known.
     pub(crate) samples: String,
 }
@@ -124,7 +128,7 @@ impl Row {
     pub(crate) fn of(campaign: &Campaign, index: usize, host: &Host<'_>) -> Self {
         let entry = &campaign.entries[index];
         let outcome = match &entry.excluded {
-            None => campaign.record(index).and_then(|record| found(&record, host)).into(),
+            None => campaign.record(index).and_then(|record| found(&record, campaign.without_curves, host)).into(),
             Some(reason) if reason.is_empty() => Outcome::Refused("left out by the manifest".to_owned()),
             Some(reason) => Outcome::Refused(format!("left out by the manifest: {reason}")),
         };
@@ -182,9 +186,15 @@ impl Row {
         files::write(&Self::path(folder, index), &text)
     }
 
-    /// Finding of this name and unit.
+    /// Friction curve of the record, if it has one.
+    pub(super) fn curve(&self) -> Option<&RowCurve> {
+        self.found()?.friction_curve.found()
+    }
+
+    /// Finding of this name and unit, or what the friction curve states under it.
     pub(crate) fn told(&self, (name, unit): (&str, &str)) -> Option<&Told> {
-        self.found()?.findings.iter().find(|told| told.name == name && told.unit == unit)
+        let stated = self.curve().into_iter().flat_map(|curve| &curve.stated);
+        self.found()?.findings.iter().chain(stated).find(|told| told.name == name && told.unit == unit)
     }
 }
 
@@ -195,18 +205,33 @@ pub(super) fn in_unit(value: impl Display, unit: &str) -> String {
 
 /// Names and units of all quantities of `rows`, in the order in which they first appear.
 pub(crate) fn quantities<'a>(rows: &[&'a Row]) -> Vec<(&'a str, &'a str)> {
-    let mut quantities = Vec::new();
-    for told in rows.iter().filter_map(|row| row.found()).flat_map(|found| &found.findings) {
-        let quantity = (told.name.as_str(), told.unit.as_str());
-        if !quantities.contains(&quantity) {
-            quantities.push(quantity);
+    named(rows.iter().filter_map(|row| row.found()).flat_map(|found| &found.findings))
+}
+
+/// The same of what the friction curves state.
+pub(super) fn curve_quantities(rows: &[Row]) -> Vec<(&str, &str)> {
+    named(rows.iter().filter_map(Row::curve).flat_map(|curve| &curve.stated))
+}
+
+fn named<'a>(told: impl Iterator<Item = &'a Told>) -> Vec<(&'a str, &'a str)> {
+    tally(told.map(|told| (told.name.as_str(), told.unit.as_str()))).into_iter().map(|(name, _)| name).collect()
+}
+
+/// Each of the items once, with how often it is there, in the order in which they first appear.
+pub(super) fn tally<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<(T, usize)> {
+    let mut counts: Vec<(T, usize)> = Vec::new();
+    for item in items {
+        match counts.iter_mut().find(|(other, _)| *other == item) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((item, 1)),
         }
     }
-    quantities
+    counts
 }
 
 /// Identifies one record.
-fn found(record: &RecordOptions, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+fn found(record: &RecordOptions, without_curve: bool, host: &Host<'_>) -> Result<Found, Box<dyn Error>> {
+    let begun = Instant::now();
     let (input, decay) = record.prepared(host)?;
     let candidates = record.question.candidates(host)?;
     let comparison =
@@ -216,13 +241,16 @@ fn found(record: &RecordOptions, host: &Host<'_>) -> Result<Found, Box<dyn Error
         .filter(|gain| gain.2 > 0.0);
     let clock = Some((Source::Clock, 1.0, record.given.choice.rate_u)).filter(|clock| clock.2 > 0.0);
     let stated = record.question.stated().chain(gain).chain(clock);
-    let doubts = comparison
-        .warnings()
-        .iter()
-        .filter(|warning| warning.severity() == Severity::Doubt)
-        .map(ToString::to_string)
-        .collect();
+    let doubting = || comparison.warnings().iter().filter(|warning| warning.severity() == Severity::Doubt);
+    let doubts = doubting().map(ToString::to_string).collect();
     let samples = fingerprint(&input.record);
+    let friction_curve = if without_curve {
+        Outcome::Refused("left out by --no-curves".to_owned())
+    } else {
+        let curve = record.question.friction_curve(preferred, std::slice::from_ref(&decay), begun);
+        let of_record = doubting().filter(|warning| !warning.spares_curve()).map(ToString::to_string);
+        curve.map_or_else(Outcome::Refused, |curve| Outcome::Found(RowCurve::of(&curve, of_record)))
+    };
     let warnings = input.warnings.into_iter().chain(comparison.warnings().iter().map(ToString::to_string));
     Ok(Found {
         origin: input.origin,
@@ -239,6 +267,7 @@ fn found(record: &RecordOptions, host: &Host<'_>) -> Result<Found, Box<dyn Error
         duration_s: decay.record().duration(),
         warnings: warnings.collect(),
         doubts,
+        friction_curve,
         samples,
     })
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fmm_identify::Source;
 use fmm_model::Estimated;
 use fmm_uq::{Consensus, RandomEffects, UncertaintyError};
 use serde::Serialize;
@@ -33,13 +34,15 @@ pub(super) struct Parted {
 }
 
 impl Parted {
-    /// Inputs of what records tell of one quantity. Inputs of one source, value and uncertainty are one input.
+    /// Inputs of what records tell of one quantity. Inputs of one source, value and uncertainty are one input. The
+    /// smoothness that friction curves are given is one for all, 0 ± 1 in standard deviations.
     pub(super) fn of(told: &[(&Row, &Told)]) -> Self {
+        let smoothness = Stated { source: Source::Smoothness.to_string(), value: 0.0, u: 1.0 };
         let mut own: Vec<f64> = vec![0.0; told.len()];
         let mut by_input: BTreeMap<(&str, u64, u64), (&Stated, Parts)> = BTreeMap::new();
         for (record, (row, told)) in told.iter().enumerate() {
             for part in &told.contributions {
-                let mut stated = row.found().into_iter().flat_map(|found| &found.stated);
+                let mut stated = row.found().into_iter().flat_map(|found| &found.stated).chain([&smoothness]);
                 match stated.find(|stated| stated.source == part.source) {
                     Some(input) => {
                         let key = (input.source.as_str(), input.value.to_bits(), input.u.to_bits());

@@ -6,15 +6,16 @@ use serde::Serialize;
 
 use super::Asked;
 use super::campaign::Campaign;
-use super::dependence::{Dependence, FRICTION, LOAD, dependences, number_in};
+use super::dependence::{Dependence, FRICTION, LOAD, dependences, is_under, number_in};
 use super::joint::Together;
+use super::pooled::Pooled;
 use super::row::{Outcome, Row, Told, quantities};
 use super::shared::{Parted, SharedPart};
 use super::sheet::Field;
 use super::table::probability;
 
 /// Coverage probability of intervals (1).
-const LEVEL: f64 = 0.95;
+pub(super) const LEVEL: f64 = 0.95;
 
 /// Each quantity that two records or more show.
 #[derive(Debug, Clone, Serialize)]
@@ -31,6 +32,8 @@ pub(crate) struct Summary {
     /// True if these count all the same, as that was asked for.
     pub(crate) counts_doubtful: bool,
     pub(crate) quantities: Vec<Quantity>,
+    /// Friction over the speed, no law assumed, unless curves are left out.
+    pub(crate) friction_curve: Option<Pooled>,
     /// Friction against what differs between the records.
     pub(crate) dependences: Vec<Dependence>,
     /// All records fitted together, where that is asked for.
@@ -132,13 +135,14 @@ impl Summary {
         let counted: Vec<&Row> = rows.iter().filter(|row| row.counts(asked.count_doubtful)).collect();
         let loads = groups_of_load(&counted);
         let of = |quantity: (&'_ str, &'_ str)| -> Vec<Quantity> {
+            let shown: Vec<(&Row, &Told)> =
+                counted.iter().filter_map(|row| Some((*row, row.told(quantity)?))).collect();
             if loads.len() < 2 || !is_of_load(quantity.0) {
-                return Quantity::of(campaign, &counted, None, together, quantity).into_iter().collect();
+                return Quantity::of(campaign, &shown, None, together, quantity).into_iter().collect();
             }
             let under = |ends: &(f64, f64)| {
-                let within = |row: &&&Row| number_in(row, LOAD).is_some_and(|load| (ends.0..=ends.1).contains(&load));
-                let rows: Vec<&Row> = counted.iter().filter(within).copied().collect();
-                Quantity::of(campaign, &rows, Some(*ends), together, quantity)
+                let shown: Vec<(&Row, &Told)> = shown.iter().filter(|(row, _)| is_under(row, *ends)).copied().collect();
+                Quantity::of(campaign, &shown, Some(*ends), together, quantity)
             };
             loads.iter().filter_map(under).collect()
         };
@@ -160,6 +164,7 @@ impl Summary {
             doubted: rows.iter().filter_map(doubted).collect(),
             counts_doubtful: asked.count_doubtful,
             quantities: quantities(&counted).into_iter().flat_map(of).collect(),
+            friction_curve: Pooled::of(campaign, rows, asked.count_doubtful),
             dependences: dependences(&counted, &asked.against),
             joint,
             sheet: campaign.sheet.as_ref().map(|sheet| sheet.fields(rows, &counted)),
@@ -199,7 +204,7 @@ fn is_of_load(name: &str) -> bool {
 }
 
 /// Ends of the loads (N) under which `rows` stand, those that are alike together.
-fn groups_of_load(rows: &[&Row]) -> Vec<(f64, f64)> {
+pub(super) fn groups_of_load(rows: &[&Row]) -> Vec<(f64, f64)> {
     let mut loads: Vec<f64> = rows.iter().filter_map(|row| number_in(row, LOAD)).collect();
     loads.sort_by(f64::total_cmp);
     let mut groups: Vec<(f64, f64)> = Vec::new();
@@ -224,15 +229,14 @@ fn by_joint(together: &Together, (name, unit): (&str, &str)) -> Option<(f64, Opt
 }
 
 impl Quantity {
-    fn of(
+    /// Consensus of the records that show it; `None` if fewer than two of them tell it with an uncertainty.
+    pub(super) fn of(
         campaign: &Campaign,
-        rows: &[&Row],
+        shown: &[(&Row, &Told)],
         loads: Option<(f64, f64)>,
         together: Option<&Together>,
         quantity: (&str, &str),
     ) -> Option<Self> {
-        let shown: Vec<(&Row, &Told)> =
-            rows.iter().filter_map(|row| row.told(quantity).map(|told| (*row, told))).collect();
         let told: Vec<(&Row, &Told)> =
             shown.iter().copied().filter(|(_, told)| told.u.is_some_and(|u| u > 0.0)).collect();
         let parted = Parted::of(&told);

@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use super::campaign::Campaign;
 use super::dependence::FRICTION;
-use super::row::{Found, Outcome, Row, Told, in_unit, quantities};
+use super::pooled::{self, Pooled};
+use super::row::{Found, Outcome, Row, Told, curve_quantities, in_unit, quantities};
 use super::sheet::Field;
 use super::summary::{ByGroup, Outlying, Quantity, Summary};
 use crate::answer::Document;
@@ -16,7 +17,8 @@ use crate::output::of_size;
 
 /// One line for each record, with all digits.
 pub(crate) fn csv(campaign: &Campaign, rows: &[Row]) -> Result<String, Box<dyn Error>> {
-    let names = quantities(&rows.iter().collect::<Vec<_>>());
+    let mut names = quantities(&rows.iter().collect::<Vec<_>>());
+    names.extend(curve_quantities(rows));
     let columns = campaign.columns();
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut head: Vec<String> = vec!["file".to_owned()];
@@ -206,6 +208,7 @@ pub(super) fn apart_lines(summary: &Summary) -> Vec<String> {
     let by_information = FRICTION.iter().copied().chain(["natural_frequency_hz", "damping_ratio"]);
     let quantities =
         by_information.flat_map(|ending| summary.quantities.iter().filter(move |one| one.name.ends_with(ending)));
+    let quantities = quantities.chain(summary.friction_curve.iter().flat_map(Pooled::stated));
     let mut named: Vec<&str> = Vec::new();
     for (quantity, record) in
         quantities.flat_map(|quantity| quantity.outlying.iter().map(move |record| (quantity, record)))
@@ -308,9 +311,10 @@ pub(crate) fn text(rows: &[Row], summary: &Summary) -> String {
             let _ = writeln!(text, "    {line}");
         }
     }
+    let curves = summary.friction_curve.iter().flat_map(pooled::lines);
     let dependences = summary.dependences.iter().map(|dependence| dependence.statement.clone());
     let sheet = summary.sheet.as_deref().map(sheet_line);
-    for line in dependences.chain(joint_lines(summary)).chain(sheet) {
+    for line in curves.chain(dependences).chain(joint_lines(summary)).chain(sheet) {
         let _ = writeln!(text, "  {line}");
     }
     text.trim_end().to_owned()

@@ -7,7 +7,10 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use fmm_fit::Progress;
-use fmm_identify::{Candidate, Comparison, Experiment, Inquiry, Known, Machine, Preparation, Sensor, Source};
+use fmm_identify::{
+    Candidate, Comparison, Experiment, FrictionCurve, Identification, Inquiry, Known, Machine, Preparation, Sensor,
+    Source,
+};
 use fmm_model::Restoring;
 use fmm_record::{Quantity, Record};
 
@@ -191,9 +194,25 @@ impl Question {
     }
 
     /// What is left of the time limit of a search that has `begun` then; `None` without a limit.
-    pub(crate) fn time_left(&self, begun: Instant) -> Option<Duration> {
+    fn time_left(&self, begun: Instant) -> Option<Duration> {
         let left = self.time_limit? - begun.elapsed().as_secs_f64();
         Some(Duration::try_from_secs_f64(left.max(0.0)).unwrap_or(Duration::MAX))
+    }
+
+    /// Friction over the speed, no law assumed, of the `decays` that `found` explains, in what is left of the time limit
+    /// of a search that has `begun` then; or the reason why there is none.
+    pub(crate) fn friction_curve(
+        &self,
+        found: &Identification,
+        decays: &[Experiment],
+        begun: Instant,
+    ) -> Result<FrictionCurve, String> {
+        let curve = match self.time_left(begun) {
+            Some(limit) => FrictionCurve::beside_within(found, decays, limit),
+            None => FrictionCurve::beside(found, decays),
+        };
+        let is_over = || self.time_left(begun).is_some_and(|left| left.is_zero());
+        curve.map_err(|error| if is_over() { "the time limit is over".to_owned() } else { error.to_string() })
     }
 
     fn held(&self) -> Result<Vec<Held>, Box<dyn Error>> {

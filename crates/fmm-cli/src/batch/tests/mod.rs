@@ -1,6 +1,7 @@
 //! Campaigns of simulated records: no file is lost, any split gives the same bytes, and the interval holds.
 
 mod manifest;
+mod pooled;
 mod summary;
 
 use std::path::{Path, PathBuf};

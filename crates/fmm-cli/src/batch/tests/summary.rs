@@ -33,13 +33,15 @@ fn the_most_influential_record_is_named() {
             duration_s: 5.0,
             warnings: Vec::new(),
             doubts: if index == 2 { vec!["the residuals are structured".to_owned()] } else { Vec::new() },
+            friction_curve: Outcome::Refused("left out".to_owned()),
             samples: index.to_string(),
         };
         let file = PathBuf::from(format!("run_{index}.csv"));
         Row { file, description: BTreeMap::new(), is_excluded: false, outcome: Outcome::Found(found) }
     };
     let rows: Vec<Row> = [1.0, 1.1, 5.0, 0.9].iter().enumerate().map(row).collect();
-    let campaign = Campaign { options: Vec::new(), group: None, sheet: None, entries: Vec::new() };
+    let campaign =
+        Campaign { options: Vec::new(), group: None, sheet: None, without_curves: true, entries: Vec::new() };
     let all = Asked { count_doubtful: true, ..NOTHING };
     let summary = Summary::of(&campaign, &rows, &all, None);
     let (file, moved) = summary.quantities[0].most_influential.as_ref().unwrap();
