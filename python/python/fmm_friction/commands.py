@@ -414,6 +414,7 @@ def batch(
     count_doubtful: bool = False,
     against: Sequence[str] = (),
     search: bool = False,
+    curves: bool = True,
     jobs: int | None = None,
     progress: Progress | bool = False,
     **keywords: Unpack[FreeOptions],
@@ -430,6 +431,7 @@ def batch(
         count_doubtful: count records whose fit is doubted by warnings.
         against: columns of the manifest against which friction is set.
         search: search a law for each record instead of fitting ``coulomb_viscous``.
+        curves: find the friction curve of each record, which takes most of the time.
         jobs: records at a time, as many as there are processors unless given.
         progress: called with a sentence on how far it is, or ``True`` for a line on standard error.
         **keywords: those of :class:`~fmm_friction.options.FreeOptions`, for all records.
@@ -457,6 +459,7 @@ def batch(
             "joint": joint,
             "count_doubtful": count_doubtful,
             "search": search,
+            "no_curves": not curves,
             "jobs": jobs,
         }
     )

@@ -93,7 +93,7 @@ impl Pooled {
                 None => {}
             }
         }
-        let missing = why_not(&curved);
+        let mut missing = why_not(&curved);
         let loads = groups_of_load(&curved.iter().map(|(row, _)| *row).collect::<Vec<_>>());
         let mut curves = Vec::new();
         if missing.is_none() {
@@ -106,6 +106,7 @@ impl Pooled {
                     (curved.len() > 1).then(|| PooledCurve::of(campaign, &curved, Some(*ends)))
                 };
                 curves.extend(loads.iter().filter_map(within));
+                missing = curves.is_empty().then(|| "under no load two records have a curve that counts".to_owned());
             }
         }
         Some(Self { curves, missing, left_out })
@@ -122,7 +123,7 @@ impl Pooled {
 fn why_not(curved: &[Curved<'_>]) -> Option<String> {
     let kind = |(_, curve): &Curved<'_>| {
         let whole = if curve.whole_resistance { "" } else { " without a declared damping" };
-        format!("{} over {}{whole}", label("friction", &curve.unit), curve.speed_unit)
+        format!("{} over {}{whole}", quantity(&curve.unit), curve.speed_unit)
     };
     match tally(curved.iter().map(kind)).as_slice() {
         [] | [(_, 1)] => Some("fewer than two records have a curve that counts".to_owned()),
@@ -163,6 +164,11 @@ impl PooledCurve {
             band: common_speeds.map_or_else(Vec::new, drawn),
         }
     }
+}
+
+/// Name of friction in this unit.
+fn quantity(unit: &str) -> String {
+    if unit == COEFFICIENT { "friction coefficient".to_owned() } else { label("friction", unit) }
 }
 
 /// What a record tells.
@@ -219,5 +225,17 @@ impl PooledLevel {
         let runs: Vec<(Estimated, Estimated)> = shown.iter().filter_map(run).collect();
         let over_load = if unit == COEFFICIENT { over_load((name, "N"), &runs) } else { None };
         Some(Self { speed, friction, over_load })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn common_speeds_are_round() {
+        assert_eq!(round_speeds((0.0017, 0.17)), [0.002, 0.005, 0.01, 0.02, 0.05, 0.1]);
+        assert_eq!(round_speeds((5.0, 130.0)), [5.0, 10.0, 20.0, 50.0, 100.0]);
+        assert_eq!(round_speeds((0.06, 0.09)), [0.06, 0.09]);
     }
 }

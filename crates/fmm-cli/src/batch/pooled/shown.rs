@@ -4,7 +4,7 @@ use std::iter;
 
 use fmm_model::Rounded;
 
-use super::{COEFFICIENT, Pooled, PooledCurve, PooledLevel};
+use super::{Pooled, PooledCurve, PooledLevel, quantity};
 use crate::batch::summary::Excluded;
 use crate::batch::table::probability;
 use crate::figure::{Panel, Role, drawn, label};
@@ -23,12 +23,8 @@ impl PooledCurve {
             Some((low, high)) if low == high => format!(" under {low} N"),
             Some((low, high)) => format!(" under {low} N to {high} N"),
         };
-        format!("friction over speed, no law assumed{whole}, of {} records{loads}", self.records.len())
-    }
-
-    /// Quantity of the axis of friction.
-    fn quantity(&self) -> String {
-        if self.unit == COEFFICIENT { "friction coefficient".to_owned() } else { label("friction", &self.unit) }
+        let common = if self.common_speeds.is_some() { "" } else { ", with no speed that all were sampled at" };
+        format!("friction over speed, no law assumed{whole}, of {} records{loads}{common}", self.records.len())
     }
 
     /// Headings of the columns of a table, and its rows.
@@ -36,12 +32,12 @@ impl PooledCurve {
         let is_over_load = self.levels.iter().any(|level| level.over_load.is_some());
         let columns = ["mean ± u", "95 % interval", "shared u", "spread τ", "p"].map(str::to_owned);
         let over_load = is_over_load.then(|| "force without load / N (p)".to_owned());
-        let headings = iter::once(self.quantity()).chain(columns).chain(over_load).collect();
+        let headings = iter::once(quantity(&self.unit)).chain(columns).chain(over_load).collect();
         let row = |level: &PooledLevel| {
             let friction = &level.friction;
             let place = match level.speed {
                 Some(speed) => format!("at {} {}", Rounded::significant(speed, 3), self.speed_unit),
-                None => words(friction.name.trim_start_matches("friction_")).to_owned(),
+                None => words(friction.name.trim_start_matches("friction_")),
             };
             let rounded = Rounded::new(friction.mean, Some(friction.u));
             let [low, high] = friction.interval_95;
@@ -63,7 +59,7 @@ impl PooledCurve {
 
     fn picture(&self, index: usize) -> String {
         let step = self.each.len().div_ceil(DRAWN);
-        let panel = Panel::new(label("speed", &self.speed_unit), self.quantity(), 380.0);
+        let panel = Panel::new(label("speed", &self.speed_unit), quantity(&self.unit), 380.0);
         let panel = self
             .each
             .iter()

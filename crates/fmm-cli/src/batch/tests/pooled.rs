@@ -17,8 +17,11 @@ fn summary(home: &Path, manifest: &str) -> (Campaign, Vec<Row>, Summary) {
 fn curves_are_pooled_and_what_they_share_stays() {
     let home = folder("pooled");
     records(&home, &[0.02, 0.0202, 0.0199, 0.0201, 0.0198, 0.0200]);
-    let lines: String = (0..6).map(|run| format!("run_{run:02}.csv,10,2,0.01\n")).collect();
-    let (campaign, rows, summary) = summary(&home, &format!("file,mass,normal_load,normal_load_u\n{lines}"));
+    let mut manifest = "file,mass,normal_load,normal_load_u\n".to_owned();
+    for run in 0..6 {
+        manifest.extend([format!("run_{run:02}.csv,10,2,0.01\n")]);
+    }
+    let (campaign, rows, summary) = summary(&home, &manifest);
     let pooled = summary.friction_curve.as_ref().unwrap();
     let [curve] = pooled.curves.as_slice() else { panic!("{pooled:?}") };
     assert_eq!((curve.unit.as_str(), curve.records.len(), pooled.left_out.len()), ("1", 6, 0), "{pooled:?}");
@@ -110,7 +113,8 @@ fn what_differs_is_not_mixed() {
     per_mass(&mut rows[0]);
     let mixed = Summary::of(&campaign, &rows, &NOTHING, None);
     let text = table::text(&rows, &mixed);
-    let why = "curves of different kinds have no mean: friction / (m/s²) over m/s (1), friction / 1 over m/s (5)";
+    let why =
+        "curves of different kinds have no mean: friction / (m/s²) over m/s (1), friction coefficient over m/s (5)";
     assert!(mixed.friction_curve.unwrap().curves.is_empty() && text.contains(why), "{text}");
     rows[1..].iter_mut().for_each(per_mass);
     let forces = Summary::of(&campaign, &rows, &NOTHING, None).friction_curve.unwrap();
