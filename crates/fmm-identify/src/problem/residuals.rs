@@ -176,9 +176,10 @@ impl Problem<'_> {
         widest(
             #[inline(always)]
             || {
-                let offset = offset;
+                // A copy is what vectors take.
+                let zero = offset;
                 for ((out, model), measured) in residuals.iter_mut().zip(simulated).zip(measured) {
-                    *out = model + offset - measured;
+                    *out = model + zero - measured;
                 }
             },
         );
