@@ -116,9 +116,10 @@ impl Experiment {
             return None;
         }
         let (interval, angular) = (self.record.interval(), 2.0 * PI * self.guess.frequency());
-        // Friction takes Δa/ω from the velocity with each half cycle.
+        // Friction takes Δa/ω from the velocity with each half cycle; one half cycle does not show it.
+        let losses = self.summary.half_swings.checked_sub(1).filter(|losses| *losses > 0)?;
         let (first, last) = self.summary.amplitudes;
-        let loss = (first - last) / self.summary.half_swings.saturating_sub(1).max(1) as f64;
+        let loss = (first - last).abs() / losses as f64;
         // Δa h/8 < UNSEEN σ/√n with h = n Δt, and the same with Δa h²/48.
         let most = match self.record.quantity() {
             Quantity::Velocity => (8.0 * UNSEEN * self.white_noise() / (angular * loss * interval)).powf(2.0 / 3.0),
@@ -148,5 +149,66 @@ impl Experiment {
             ..self.summary.clone()
         };
         (summary.samples >= FEWEST_SAMPLES).then(|| Self { record, kept, shapes, summary, ..self.clone() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_friction::CoulombViscous;
+    use fmm_model::Oscillator;
+    use fmm_record::Record;
+    use fmm_sim::{Engine, Exact, Sampling, Scenario};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    use super::*;
+    use crate::experiment::Preparation;
+
+    const INTERVAL: f64 = 2.5e-5;
+
+    /// Velocity (m/s) of 2 Hz at these times after the release, with this friction per mass (m/s²) and c/m = 0.001 1/s.
+    fn motion(friction: f64, sampling: &Sampling) -> Vec<f64> {
+        let law = CoulombViscous::new(friction, 0.001).unwrap();
+        let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+        Exact.run(&scenario.starting_at(0.02, 0.0).unwrap(), sampling).unwrap().velocity().values().to_vec()
+    }
+
+    /// The motion in 100 000 samples with `noise` (m/s).
+    fn ring_down(friction: f64, noise: f64) -> Experiment {
+        let mut values = motion(friction, &Sampling::uniform(INTERVAL, 100_000).unwrap());
+        if noise > 0.0 {
+            let mut random = ChaCha8Rng::seed_from_u64(3);
+            let normal = Normal::new(0.0, noise).unwrap();
+            values.iter_mut().for_each(|value| *value += normal.sample(&mut random));
+        }
+        let record = Record::new(0.0, INTERVAL, values, Quantity::Velocity, "m/s").unwrap();
+        Experiment::ring_down(&record, &Preparation::default()).unwrap()
+    }
+
+    /// Means of twenty samples of a sine are 1.6e-6 smaller than it is in their middle.
+    #[test]
+    fn means_are_the_motion_in_their_middle() {
+        let means = ring_down(1e-4, 1e-5).averaged().unwrap();
+        let (record, noise) = (means.record(), means.summary().noise);
+        let count = (record.interval() / INTERVAL).round();
+        assert!((19.0..=20.0).contains(&count) && record.len() == means.summary().samples, "{count}");
+        assert!((noise / (1e-5 / count.sqrt()) - 1.0).abs() < 0.1, "{noise}");
+        let times: Vec<f64> = record.times().collect();
+        let truth = motion(1e-4, &Sampling::at(times).unwrap());
+        let product: f64 = truth.iter().zip(record.values()).map(|(truth, mean)| truth * mean).sum();
+        let square: f64 = truth.iter().map(|truth| truth * truth).sum();
+        assert!((product / square - 1.0).abs() < 4e-7, "{:e}", product / square - 1.0);
+    }
+
+    /// Where a mean would show the jump of the acceleration, samples are taken one by one.
+    #[test]
+    fn means_hide_no_reversal() {
+        let longest = |noise: f64| ring_down(0.3, noise).averaged().map(|means| means.record().interval() / INTERVAL);
+        assert_eq!(longest(0.0), None);
+        assert_eq!(longest(1e-6), None);
+        let (few, many) = (longest(5e-5).unwrap(), longest(1e-3).unwrap());
+        // Δa h/8 = 0.3 σ/√n with Δa = 0.6 m/s² gives n = 4 and less than 30, and a thousand in a period are 20.
+        assert!((3.0..5.0).contains(&few) && (18.5..20.5).contains(&many), "{few}, {many}");
     }
 }
