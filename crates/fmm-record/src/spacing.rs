@@ -145,6 +145,16 @@ impl Record {
 
     /// Means of `count` samples in a row each, in the middle of their times. A rest that makes no whole row is left out.
     ///
+    /// ```
+    /// use fmm_record::{Quantity, Record};
+    ///
+    /// let record = Record::sampled(1000.0, vec![0.1, 0.3, 0.5, 0.5, 0.7], Quantity::Velocity, "m/s")?;
+    /// let means = record.means(2)?;
+    /// assert!((means.values()[0] - 0.2).abs() < 1e-12 && means.len() == 2);
+    /// assert_eq!((means.start(), means.interval()), (0.5e-3, 2e-3));
+    /// # Ok::<(), fmm_record::RecordError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`RecordError::Options`] for a count of 0 or of more samples than there are, and for samples at unequal
     /// intervals.

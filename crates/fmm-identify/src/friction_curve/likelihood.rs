@@ -189,9 +189,7 @@ impl Linearised {
         let (precision, slope) = (of_levels, rest_slope);
         Some(Likelihood { precision, information, freedom, variance, by_declared, rest, mixed, slope })
     }
-}
 
-impl Linearised {
     /// ∂η/∂x₀ u of each value x₀ that is declared with u: −Λ_bn Λ_nn⁻¹ e/u, with e its place in n.
     fn by_declared<'a>(
         &'a self,

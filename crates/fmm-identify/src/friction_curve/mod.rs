@@ -239,6 +239,17 @@ impl FrictionCurve {
 
     /// Value at `speed` of a curve that was kept as `values` at its [speeds](Self::speeds), by the same cubics; `None`
     /// above the top speed, or for another number of values than of levels.
+    ///
+    /// Speeds and values have the units of the curve; it is for who keeps curves in files.
+    ///
+    /// ```
+    /// use fmm_identify::FrictionCurve;
+    ///
+    /// // Fifteen levels of a constant friction.
+    /// let speeds: Vec<f64> = (0..15).map(|i| f64::from(i) / 14.0).collect();
+    /// assert_eq!(FrictionCurve::through(&speeds, &[0.2; 15], 1.1), None);
+    /// assert!((FrictionCurve::through(&speeds, &[0.2; 15], 0.3).unwrap() - 0.2).abs() < 1e-12);
+    /// ```
     pub fn through(speeds: &[f64], values: &[f64], speed: f64) -> Option<f64> {
         let top = *speeds.last().filter(|_| values.len() == LEVELS)?;
         let weighted = || weights(speed / top).iter().zip(values).map(|(weight, value)| weight * value).sum();
