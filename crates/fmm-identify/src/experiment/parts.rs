@@ -180,7 +180,9 @@ mod tests {
         if noise > 0.0 {
             let mut random = ChaCha8Rng::seed_from_u64(3);
             let normal = Normal::new(0.0, noise).unwrap();
-            values.iter_mut().for_each(|value| *value += normal.sample(&mut random));
+            for value in &mut values {
+                *value += normal.sample(&mut random);
+            }
         }
         let record = Record::new(0.0, INTERVAL, values, Quantity::Velocity, "m/s").unwrap();
         Experiment::ring_down(&record, &Preparation::default()).unwrap()
