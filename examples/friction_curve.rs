@@ -1,22 +1,23 @@
-//! Coverage of the friction curve by noise and kind of friction: simulated ring-downs with known curves.
+//! Coverage of the friction curve by noise and kind of friction: simulated motions with known curves.
 //!
 //! ```text
 //! cargo run --release --example friction_curve -- --seeds 100
 //! ```
 //!
 //! Each machine has a frequency, a number of half cycles and a curve of its own. `--tuning` takes the seeds on which
-//! the rules of the curve were chosen; the others are the published ones.
+//! the rules of the curve were chosen; the others are the published ones. `--motion` takes driven motions and impacts
+//! in place of ring-downs.
 
 use std::error::Error;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use fmm_friction::SlidingLaw;
-use fmm_identify::{Experiment, FrictionCurve, FrictionLevel, Machine, Preparation};
+use fmm_identify::{Drive, Experiment, FrictionCurve, FrictionLevel, IdentifyError, ImpactTrial, Machine, Preparation};
 use fmm_model::{Oscillator, Scalar};
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, RungeKutta, Sampling, Scenario};
+use fmm_sim::{Engine, Excitation, RungeKutta, Sampling, Scenario};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal, Uniform};
@@ -41,6 +42,23 @@ struct Arguments {
     /// The seeds on which the rules were chosen.
     #[arg(long)]
     tuning: bool,
+    /// Motion of each machine.
+    #[arg(long, value_enum, default_value = "ring-down")]
+    motion: Motion,
+    /// Static level above the friction at the lowest speeds, in percent.
+    #[arg(long, default_value_t = 0.0)]
+    static_excess: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Motion {
+    RingDown,
+    /// A base that sweeps through the resonance.
+    Base,
+    /// A force that sweeps through the resonance.
+    Force,
+    /// The blow of a hammer.
+    Impact,
 }
 
 /// Friction over the speed, relative to the sliding level and the top speed, times a scale.
@@ -53,6 +71,8 @@ struct Truth {
     excess: f64,
     fall: f64,
     viscous: f64,
+    /// Static level over that at the lowest speeds (1).
+    holding: f64,
 }
 
 impl<D: Scalar> SlidingLaw<D> for Truth {
@@ -73,7 +93,7 @@ impl<D: Scalar> SlidingLaw<D> for Truth {
     }
 
     fn breakaway(&self) -> D {
-        self.coefficient(D::from(0.0))
+        self.coefficient(D::from(0.0)) * self.holding
     }
 }
 
@@ -81,12 +101,15 @@ impl<D: Scalar> SlidingLaw<D> for Truth {
 struct Case {
     truth: Truth,
     record: Record,
+    /// Force, or acceleration of the base.
+    drive: Vec<f64>,
+    motion: Motion,
     /// Speeds without noise (m/s).
     speeds: Vec<f64>,
 }
 
 impl Case {
-    fn draw(kind: usize, seed: u64, noise: f64) -> Result<Self, Box<dyn Error>> {
+    fn draw(arguments: &Arguments, kind: usize, seed: u64, noise: f64) -> Result<Self, Box<dyn Error>> {
         let mut random = ChaCha8Rng::seed_from_u64(1_000_000 * kind as u64 + seed);
         let mut between = |low: f64, high: f64| Uniform::new(low, high).map(|range| range.sample(&mut random));
         let frequency = between(1.0, 5.0)?;
@@ -99,15 +122,60 @@ impl Case {
             excess: between(0.1, 1.0)?,
             fall: between(0.05, 0.4)?,
             viscous: between(0.0, 0.5)?,
+            holding: 1.0 + arguments.static_excess / 100.0,
         };
         let rate = 200.0 * frequency;
         let samples = (half_cycles * 100.0) as usize + 50;
-        let scenario = Scenario::new(Oscillator::per_unit_mass(frequency)?, truth, 1.0)?.starting_at(amplitude, 0.0)?;
+        let scenario = Scenario::new(Oscillator::per_unit_mass(frequency)?, truth, 1.0)?;
+        let most = truth.scale * (1.0 + truth.excess) * truth.holding;
+        let at = |i: usize| i as f64 / samples as f64;
+        let drive: Vec<f64> = match arguments.motion {
+            Motion::RingDown => Vec::new(),
+            // From 0.7 to 1.3 of the natural frequency.
+            Motion::Base | Motion::Force => {
+                let phase = |i: usize| TAU * (0.7 + 0.3 * at(i)) * at(i) * samples as f64 / 200.0;
+                (0..samples).map(|i| 2.0 * most * phase(i).sin()).collect()
+            }
+            // A tenth of a period after some rest.
+            Motion::Impact => {
+                let pulse = |i: usize| if (60..80).contains(&i) { (PI * (i - 60) as f64 / 20.0).sin() } else { 0.0 };
+                (0..samples).map(|i| truth.top * omega * 2.5 * pulse(i)).collect()
+            }
+        };
+        let scenario = match arguments.motion {
+            Motion::RingDown => scenario.starting_at(amplitude, 0.0)?,
+            Motion::Base => {
+                scenario.driven_by(Excitation::sampled_force(1.0 / rate, drive.iter().map(|a| -a).collect::<Vec<_>>())?)
+            }
+            _ => scenario.driven_by(Excitation::sampled_force(1.0 / rate, drive.clone())?),
+        };
         let motion = RungeKutta::new(1e-12)?.run(&scenario, &Sampling::uniform(1.0 / rate, samples)?)?;
-        let normal = Normal::new(0.0, truth.top * noise)?;
-        let speeds = motion.velocity().values().iter().map(|v| v.abs()).collect();
+        let speeds: Vec<f64> = motion.velocity().values().iter().map(|v| v.abs()).collect();
+        let normal = Normal::new(0.0, speeds.iter().copied().fold(0.0, f64::max) * noise)?;
         let values = motion.velocity().values().iter().map(|v| v + normal.sample(&mut random)).collect();
-        Ok(Self { truth, speeds, record: Record::sampled(rate, values, Quantity::Velocity, "m/s")? })
+        let record = Record::sampled(rate, values, Quantity::Velocity, "m/s")?;
+        Ok(Self { truth, speeds, record, drive, motion: arguments.motion })
+    }
+
+    fn curve(&self) -> Result<FrictionCurve, IdentifyError> {
+        let drive = |quantity, unit| Record::sampled(self.record.rate(), self.drive.clone(), quantity, unit);
+        let preparation = Preparation::default();
+        let (machine, experiment) = match self.motion {
+            Motion::RingDown => (Machine::per_unit_mass(), Experiment::ring_down(&self.record, &preparation)?),
+            Motion::Base => {
+                let base = Drive::base(&drive(Quantity::Acceleration, "m/s^2")?)?;
+                (Machine::per_unit_mass(), Experiment::driven(&self.record, base, &preparation)?)
+            }
+            Motion::Force => {
+                let force = Drive::force(&drive(Quantity::Force, "N")?)?;
+                (Machine::unknown(), Experiment::driven(&self.record, force, &preparation)?)
+            }
+            Motion::Impact => {
+                let trial = ImpactTrial::prepare(&drive(Quantity::Force, "N")?, &self.record)?;
+                (Machine::unknown(), Experiment::impact(&trial)?)
+            }
+        };
+        FrictionCurve::of(&machine, &[experiment])
     }
 }
 
@@ -137,9 +205,7 @@ fn holds(level: &FrictionLevel, truth: f64) -> bool {
 impl Cell {
     fn take(&mut self, case: &Case) {
         let begin = Instant::now();
-        let curve = Experiment::ring_down(&case.record, &Preparation::default())
-            .and_then(|experiment| FrictionCurve::of(&Machine::per_unit_mass(), &[experiment]));
-        let curve = match curve {
+        let curve = match case.curve() {
             Ok(curve) => curve,
             Err(error) => {
                 eprintln!("{}: {error}", KINDS[case.truth.kind]);
@@ -150,10 +216,11 @@ impl Cell {
         self.times.push(begin.elapsed().as_secs_f64());
         self.limited += usize::from(!curve.limits().is_empty());
         let mut is_inside = true;
+        let top = curve.speeds().last().copied().unwrap_or_default();
         let band = curve.band(0.95).unwrap_or_default();
         for ((speed, level), (low, high)) in curve.speeds().iter().zip(curve.levels()).zip(band) {
             let truth: f64 = case.truth.coefficient(*speed);
-            let of = match speed / case.truth.top {
+            let of = match speed / top {
                 0.0 => &mut self.rest,
                 s if s < 0.03 => &mut self.low,
                 _ => &mut self.moving,
@@ -164,7 +231,7 @@ impl Cell {
         count(&mut self.band, is_inside);
         count(&mut self.path, holds(&curve.mean_over_path(), mean_over_path(case)));
         for (widths, s) in self.widths.iter_mut().zip(STATED) {
-            widths.extend(curve.at(s * case.truth.top).map(|level| level.uncertainty() / case.truth.scale));
+            widths.extend(curve.at(s * top).map(|level| level.uncertainty() / case.truth.scale));
         }
     }
 
@@ -227,12 +294,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| noise (%) | friction | holds at rest (%) | to 3 % of the top speed | above | whole curve | mean over the path \
          | u at {STATED:?} of the top speed (% of sliding) | time (s) | failed/limited |\n|---|---|---|---|---|---|---|---|---|---|"
     );
-    for noise in arguments.noise {
+    for noise in arguments.noise.iter().copied() {
         let mut all = Cell::default();
         for &kind in &arguments.kinds {
             let mut cell = Cell::default();
             for seed in 0..arguments.seeds {
-                cell.take(&Case::draw(kind, 2 * seed + u64::from(!arguments.tuning), noise / 100.0)?);
+                cell.take(&Case::draw(&arguments, kind, 2 * seed + u64::from(!arguments.tuning), noise / 100.0)?);
             }
             cell.print(noise, KINDS[kind]);
             all.add(cell);

@@ -122,10 +122,12 @@ impl Experiment {
         Ok(Self { run_down: Some(guess), ..Self::bare(record.clone(), kept, first_guess, summary) })
     }
 
-    /// The part of a run-down before its rest, with the offset that the rest shows; `None` for other experiments and
-    /// without a rest.
+    /// The part of a free motion before its rest, of a run-down with the offset that the rest shows; `None` without a
+    /// rest, and for a driven motion.
     pub(crate) fn before_rest(&self) -> Option<Self> {
-        let (time, level) = self.run_down.as_ref()?.rest?;
+        let of_impact = || self.impact.as_ref().and_then(|impact| impact.rest);
+        let Some(run_down) = &self.run_down else { return self.up_to(self.summary.rest_from.or_else(of_impact)?) };
+        let (time, level) = run_down.rest?;
         let mut moving = self.up_to(time)?;
         if self.record.quantity() == Quantity::Velocity && moving.summary.held_offset.is_none() {
             moving.summary.held_offset = Some(level);

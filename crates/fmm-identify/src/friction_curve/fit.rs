@@ -13,11 +13,14 @@ use crate::error::IdentifyError;
 use crate::experiment::parts::averaged;
 use crate::experiment::{Experiment, scaled};
 use crate::fit::stages::{Begin, fit_begun};
-use crate::friction_curve::levels::{KNOTS, LEVELS, Levels, TOP_SPEED, weights};
+use crate::friction_curve::levels::{KNOTS, LEVELS, Levels, STATIC, TOP_SPEED, weights};
 use crate::friction_curve::likelihood::{Likelihood, Linearised};
 use crate::friction_curve::mixture::{Posterior, Prior};
-use crate::friction_curve::rules::{ASTRAY, MOST_ASTRAY, MOST_SAMPLES, MOST_STEPS, SAMPLES_PER_PERIOD, SETTLED};
+use crate::friction_curve::rules::{
+    ASTRAY, MOST_ASTRAY, MOST_SAMPLES, MOST_STEPS, PARAMETER, SAMPLES_PER_PERIOD, SETTLED, STATIC_EXCESSES,
+};
 use crate::friction_curve::sources::Sources;
+use crate::law::naming::Form;
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
 use crate::quantities::rows::Place;
@@ -42,6 +45,8 @@ pub(super) struct CurveFit {
     pub(super) slowest: f64,
     /// Residual over noise, if it is too large and no noise.
     pub(super) excess: Option<f64>,
+    /// A static level above the level at rest is fitted.
+    pub(super) is_held: bool,
 }
 
 /// Motion of all records: speeds at dense times, and the lowest at the samples of each half cycle.
@@ -52,7 +57,10 @@ struct Path {
 
 /// The problem of levels, about the fit by Coulomb and viscous friction.
 pub(super) struct Levelled<'a> {
+    /// With the static level held at the level at rest.
     pub(super) problem: Problem<'a>,
+    /// With the static level fitted; `None` where no drive goes on.
+    holding: Option<Problem<'a>>,
     pub(super) values: Vec<f64>,
     pub(super) top: f64,
     /// Mean friction over the path.
@@ -64,14 +72,16 @@ pub(super) struct Levelled<'a> {
 }
 
 impl<'a> Levelled<'a> {
-    /// The problem of `experiments` on `machine`, with these terms beside the levels.
+    /// The problem of `experiments` on `machine`, with forces in this `form` and these terms beside the levels.
     pub(super) fn of(
+        form: Form,
         machine: &Machine,
         beside: &Terms,
         experiments: &'a [Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        let simple = Problem::of(&Candidate::of::<CoulombViscous>().with(beside.clone()), *machine, experiments)?;
+        let by = |candidate: Candidate| Problem::in_form(form, &candidate, *machine, experiments);
+        let simple = by(Candidate::of::<CoulombViscous>().with(beside.clone()))?;
         let options = Options::default();
         let mut observer =
             |_: &Progress<'_>| if is_past(end) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
@@ -87,57 +97,63 @@ impl<'a> Levelled<'a> {
             return Err(IdentifyError::not_seen("the motion loses no energy, so there is no friction over speed"));
         }
         let terms = beside.clone().holding(TOP_SPEED, top)?;
-        let problem = Problem::of(&Candidate::of::<Levels>().with(terms), *machine, experiments)?;
+        let candidate = Candidate::of::<Levels>().with(terms);
+        let (mut problem, mut holding) = (by(candidate.clone())?, None);
         let mut values = line.values()[..first].to_vec();
         values.extend(KNOTS.map(|s| level + slope * s * top));
         values.push(top);
+        if let Some(level) = problem.parameters()[..problem.table.shared].get(first + STATIC) {
+            let held = by(candidate.holding(level.name(), 0.0)?)?;
+            let fitted = std::mem::replace(&mut problem, held);
+            values.push(0.0);
+            // After the blow of a hammer the contact slides until it rests.
+            let goes_on = |one: &Experiment| one.drive().is_some() && one.impact.is_none();
+            holding = experiments.iter().any(goes_on).then_some(fitted);
+        }
         values.extend_from_slice(&line.values()[shared..]);
-        Ok(Self { problem, values, top, scale, line: line.values().to_vec(), line_squares: line.sum_of_squares() })
+        let (line, line_squares) = (line.values().to_vec(), line.sum_of_squares());
+        Ok(Self { problem, holding, values, top, scale, line, line_squares })
     }
 }
 
 impl CurveFit {
-    /// The curve that `experiments` on `machine` share, with these terms beside it, found until the `end`.
+    /// The curve that `experiments` on `machine` share, in this `form` with these terms beside it, found until the
+    /// `end`.
     pub(super) fn of(
+        form: Form,
         machine: &Machine,
         beside: &Terms,
         experiments: &[Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        Self::of_means(machine, beside, experiments, &averaged(experiments), end)
+        Self::of_means(form, machine, beside, experiments, &averaged(experiments), end)
     }
 
     /// The curve that `experiments` share by their `means`.
     fn of_means(
+        form: Form,
         machine: &Machine,
         beside: &Terms,
         experiments: &[Experiment],
         means: &[Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        let Levelled { ref problem, mut values, top, scale, .. } = Levelled::of(machine, beside, means, end)?;
+        let Levelled { ref problem, ref holding, mut values, top, scale, .. } =
+            Levelled::of(form, machine, beside, means, end)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         if let Some(thinned) = problem.thinned() {
-            let few = problem.with_records(&thinned);
             // Means tell more of the levels than a rough simulation does.
-            let few = if means.iter().zip(experiments).all(|(means, one)| means.rows() == one.rows()) {
-                few.simulated_roughly()
-            } else {
-                few
+            let are_samples = means.iter().zip(experiments).all(|(means, one)| means.rows() == one.rows());
+            let few = |problem: &Problem<'_>| {
+                let few = problem.with_records(&thinned);
+                if are_samples { few.simulated_roughly() } else { few }
             };
-            let few = Settled::of(&few, values, scale, MOST_STEPS, end)?;
             // What does not settle with few samples does not with all of them.
-            if !few.has_ended {
-                return Err(not_settled());
-            }
-            values = few.values;
+            values =
+                Settled::with_static(&few(problem), holding.as_ref().map(few).as_ref(), values, scale, end)?.values;
         }
-        let Settled { values, near, likelihood, posterior, has_ended } =
-            Settled::of(problem, values, scale, MOST_STEPS, end)?;
-        // The intervals hold near the curve about which the record was linearised, and nowhere else.
-        if !has_ended {
-            return Err(not_settled());
-        }
+        let Settled { values, near, likelihood, posterior, .. } =
+            Settled::with_static(problem, holding.as_ref(), values, scale, end)?;
         // Speeds at the samples of the records.
         let path = Path::of(&problem.with_records(experiments), &values).map_err(failure)?;
         Ok(Self {
@@ -150,6 +166,7 @@ impl CurveFit {
             path: path.weights(top),
             slowest: path.slowest,
             excess: near.excess(problem),
+            is_held: values.get(problem.table.law + STATIC).is_some_and(|excess| *excess > 0.0 && holding.is_some()),
         })
     }
 }
@@ -172,6 +189,41 @@ pub(super) struct Settled {
 }
 
 impl Settled {
+    /// The end for `problem`, or for that with a static level where the records show one: the same but for a fitted
+    /// static level.
+    fn with_static(
+        problem: &Problem<'_>,
+        holding: Option<&Problem<'_>>,
+        values: Vec<f64>,
+        scale: f64,
+        end: Option<Instant>,
+    ) -> Result<Self, IdentifyError> {
+        let of = |problem: &Problem<'_>, values| Self::of(problem, values, scale, MOST_STEPS, end);
+        let plain = of(problem, values)?;
+        // A motion that is nowhere held does not change with a small excess: fits begin far from none.
+        let held = |holding: &Problem<'_>| {
+            let begun = STATIC_EXCESSES.map(|share| {
+                let mut values = plain.values.clone();
+                values[holding.table.law + STATIC] = share * scale;
+                of(holding, values).ok().filter(|settled| settled.has_ended)
+            });
+            begun.into_iter().flatten().min_by(|a, b| a.squares().total_cmp(&b.squares()))
+        };
+        let held = holding.and_then(held);
+        let least = plain.squares() - PARAMETER * plain.likelihood.variance;
+        let is_shown = |held: &Self| !plain.has_ended || held.squares() < least;
+        match held.filter(is_shown) {
+            Some(held) => Ok(held),
+            // The intervals hold near the curve about which the record was linearised, and nowhere else.
+            None if plain.has_ended => Ok(plain),
+            None => Err(not_settled()),
+        }
+    }
+
+    fn squares(&self) -> f64 {
+        self.near.sum_of_squares()
+    }
+
     /// Linearises `problem` from these `values` on until the mean of the posterior stays, at `most` so often and before
     /// the `end`, first for white noise, then for that of the residuals.
     pub(super) fn of(
@@ -361,8 +413,9 @@ mod tests {
         ] {
             let experiments = [ring_down(quantity, noise)];
             let means = [experiments[0].averaged().unwrap()];
+            let machine = Machine::per_unit_mass();
             let [few, all] = [&means, &experiments]
-                .map(|of| CurveFit::of_means(&Machine::per_unit_mass(), &Terms::NONE, &experiments, of, None).unwrap());
+                .map(|of| CurveFit::of_means(Form::PerMass, &machine, &Terms::NONE, &experiments, of, None).unwrap());
             assert!(means[0].record().len() <= 50_000, "{quantity} {noise}");
             let spread = all.posterior.deviations();
             for (i, (own, other)) in few.posterior.mean().iter().zip(&all.posterior.mean()).enumerate() {

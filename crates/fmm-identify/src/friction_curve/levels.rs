@@ -13,8 +13,12 @@ pub(super) const KNOTS: [f64; LEVELS] =
 /// Name of the parameter that fixes the top speed.
 pub(super) const TOP_SPEED: &str = "top_speed";
 
+/// Place of the static level among the parameters, behind the levels and the top speed.
+pub(super) const STATIC: usize = LEVELS + 1;
+
 /// Friction over the speed through [`LEVELS`] levels: a cubic between each two knots, with the slope at a knot that the
-/// parabola through its neighbours has. Level 0 holds the contact at rest. Above the top speed the last slope goes on.
+/// parabola through its neighbours has. At rest a static level holds the contact, which lies at level 0 or above. Above
+/// the top speed the last slope goes on.
 ///
 /// ```text
 /// F(v) = c₀ + c₁ h + c₂ h² + c₃ h³,   h = v − v_i,   v_i = s_i v_top
@@ -26,6 +30,7 @@ pub(super) struct Levels<D = f64> {
     /// c₀ to c₃ from each knot on.
     pieces: [[D; 4]; LEVELS],
     top: f64,
+    breakaway: D,
 }
 
 impl<D: Scalar> Levels<D> {
@@ -52,7 +57,7 @@ impl<D: Scalar> Levels<D> {
             let h = width * top;
             [levels[i], first, (chord * 3.0 - first * 2.0 - last) / h, (first + last - chord * 2.0) / (h * h)]
         });
-        Self { pieces, top }
+        Self { pieces, top, breakaway: levels[0] }
     }
 }
 
@@ -74,14 +79,18 @@ impl<D: Scalar> SlidingLaw<D> for Levels<D> {
     }
 
     fn breakaway(&self) -> D {
-        self.pieces[0][0]
+        self.breakaway
     }
 }
 
 macro_rules! level {
     ($($name:literal),*) => {
         [$(LawParameter::new(Parameter::new($name, $name, "1").bounded(Bounds::NOT_NEGATIVE), Role::Level),)*
-         LawParameter::new(Parameter::new(TOP_SPEED, "v_top", "m/s").bounded(Bounds::POSITIVE), Role::Shape)]
+         LawParameter::new(Parameter::new(TOP_SPEED, "v_top", "m/s").bounded(Bounds::POSITIVE), Role::Shape),
+         LawParameter::new(
+             Parameter::new("static_level", "static_level", "1").bounded(Bounds::NOT_NEGATIVE),
+             Role::Breakaway,
+         )]
     };
 }
 
@@ -94,8 +103,9 @@ impl LawFamily for Levels {
     type At<D: Scalar> = Levels<D>;
 
     fn at<D: Scalar>(values: &[D]) -> Result<Levels<D>, LawError> {
-        let values: [D; LEVELS + 1] = Self::checked(values)?;
-        Ok(Levels::new(&std::array::from_fn(|i| values[i]), values[LEVELS].value()))
+        let values: [D; STATIC + 1] = Self::checked(values)?;
+        let levels = Levels::new(&std::array::from_fn(|i| values[i]), values[LEVELS].value());
+        Ok(Levels { breakaway: values[STATIC], ..levels })
     }
 
     fn visit<D: Scalar, V: LawVisitor<D, Levels<D>>>(visitor: V) -> V::Output {

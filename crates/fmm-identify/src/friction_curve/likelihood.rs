@@ -59,7 +59,7 @@ impl Linearised {
     pub(super) fn of(problem: &Problem<'_>, p: &[f64], first: usize) -> Result<Self, EvaluationError> {
         let levels = first..first + LEVELS;
         let is_free = |i: &usize| !levels.contains(i) && !problem.parameters()[*i].bounds().is_fixed();
-        let places: Vec<usize> = (0..p.len()).filter(is_free).chain(levels.clone()).collect();
+        let mut places: Vec<usize> = (0..p.len()).filter(is_free).chain(levels.clone()).collect();
         let elements = problem.blocks().iter().map(|block| block.rows() * block.parameters().len()).sum();
         let (mut residuals, mut jacobian) = (vec![0.0; problem.len()], vec![0.0; elements]);
         problem.evaluate(p, &mut residuals, Some(&mut jacobian))?;
@@ -78,6 +78,14 @@ impl Linearised {
                 }
             }
             row += block.rows();
+        }
+        // A contact that never sticks does not show its static level.
+        for place in (0..places.len() - LEVELS).rev() {
+            if columns[place].iter().chain(&known[place]).all(|derivative| *derivative == 0.0) {
+                places.remove(place);
+                columns.remove(place);
+                known.remove(place);
+            }
         }
         let of_knowledge = Squares::of(&known, &residuals.split_off(measured));
         let of_records = Squares::of(&columns, &residuals);

@@ -1,4 +1,4 @@
-//! Friction over the speed of ring-downs, with a band and without a law.
+//! Friction over the speed that motions show, with a band and without a law.
 
 mod fit;
 mod level;
@@ -27,16 +27,20 @@ use crate::friction_curve::projection::friction;
 use crate::friction_curve::rules::DRAWS;
 use crate::friction_curve::sources::Sources;
 use crate::identification::Identification;
-use crate::law::naming::Units;
+use crate::law::naming::{Form, Units};
 use crate::machine::{Known, Machine, Scale, Terms};
 use crate::quantities::table::{Table, mass_of_stiffness};
 
-/// Friction over the speed as ring-downs show it, without a law: the whole resistance to the motion, of the contact and
-/// of the machine. Damping of the machine that is declared is not part of it.
+/// Friction over the speed as motions show it, without a law: the whole resistance to the motion, of the contact and of
+/// the machine. Damping of the machine that is declared is not part of it.
 ///
 /// ```text
-/// m x″ + k x + R(|x′|) sgn x′ = 0,     R(v) = N μ(v) + c v + …
+/// m x″ + k x + R(|x′|) sgn x′ = f,     R(v) = N μ(v) + c v + …
 /// ```
+///
+/// Ring-downs, run-downs, impacts and driven motions show it, one or several under one load. A contact that holds more
+/// than it slides with has a static level beside the curve where a drive goes on and shows it; of a free motion the part
+/// before its rest is taken, which no static level changes.
 ///
 /// The curve is fifteen levels at fixed speeds with cubics between them, fitted through every reversal and stop. Before
 /// the record it is a constant, a straight line, perhaps one of the falling shapes of the laws of the catalogue, and a
@@ -86,6 +90,8 @@ pub struct FrictionCurve {
     freedom: f64,
     path: [f64; LEVELS],
     slowest: f64,
+    /// Form of the forces of the fit.
+    form: Form,
     meaning: Meaning,
     unit: String,
     is_whole: bool,
@@ -101,14 +107,14 @@ enum Meaning {
 }
 
 impl FrictionCurve {
-    /// The curve that `experiments` on `machine` share; all are ring-downs under the same load.
+    /// The curve that `experiments` on `machine` share, all under the same load.
     ///
-    /// Values are coefficients if mass or stiffness and the load are known, forces if only mass or stiffness is, and
-    /// forces per mass otherwise; the uncertainties of all of them are part of those of the curve.
+    /// Values are coefficients if mass, stiffness or a measured force and the load are known, forces if the load is not,
+    /// and forces per mass otherwise; the uncertainties of all of them are part of those of the curve.
     ///
     /// # Errors
-    /// [`IdentifyError::Missing`] without an experiment, [`IdentifyError::WrongRecord`] for one that is no free
-    /// vibration, [`IdentifyError::Contradiction`] for different loads, [`IdentifyError::NotSeen`] where the fit does
+    /// [`IdentifyError::Missing`] without an experiment, [`IdentifyError::WrongRecord`] for the mobility of an impact,
+    /// [`IdentifyError::Contradiction`] for different loads, [`IdentifyError::NotSeen`] where the fit does
     /// not end, and those of a fit that cannot begin.
     pub fn of(machine: &Machine, experiments: &[Experiment]) -> Result<Self, IdentifyError> {
         Self::with_terms(machine, Terms::NONE, experiments, None)
@@ -152,17 +158,19 @@ impl FrictionCurve {
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
         let reference = experiments.first().ok_or(IdentifyError::no_record())?;
-        if experiments.iter().any(|experiment| experiment.drive().is_some() || experiment.lines().is_some()) {
-            let what =
-                "friction over speed without a law is found from ring-downs and run-downs, not from driven motions";
+        if experiments.iter().any(|experiment| experiment.lines().is_some()) {
+            let what = "friction over speed without a law is found from motions in time, not from their mobility";
             return Err(IdentifyError::wrong_record(what.to_owned()));
         }
+        // A measured force tells the scale, and how well it tells it goes with the friction.
+        let is_forced = experiments.iter().any(Experiment::is_forced);
+        let form = if is_forced { Form::Force } else { Table::form(machine) };
         if experiments.iter().any(|experiment| experiment.load_factor() != reference.load_factor()) {
-            let what = "friction over speed without a law takes ring-downs under one load: the whole resistance does \
+            let what = "friction over speed without a law takes motions under one load: the whole resistance does \
                         not follow the load";
             return Err(IdentifyError::contradiction(what));
         }
-        if machine.scale() == Scale::Unknown {
+        if machine.scale() == Scale::Unknown && !is_forced {
             let what = "ring-downs do not show the mass: give a mass or a stiffness, or take everything per unit mass";
             return Err(IdentifyError::contradiction(what));
         }
@@ -170,7 +178,7 @@ impl FrictionCurve {
         // The levels near rest decide about the rest by leaps, and nothing is lost before it.
         let moving = |one: &Experiment| one.before_rest().unwrap_or_else(|| one.clone());
         let moving: Vec<Experiment> = experiments.iter().map(moving).collect();
-        let fit = CurveFit::of(machine, &terms, &moving, end)?;
+        let fit = CurveFit::of(form, machine, &terms, &moving, end)?;
         let units = Units::of(reference.record());
         let gain = experiments.iter().map(|one| one.summary().gain_uncertainty).fold(0.0, f64::max);
         let clock = Clock::of(experiments);
@@ -179,8 +187,11 @@ impl FrictionCurve {
             Scale::Stiffness(_) => clock.order,
             _ => clock.order - 2.0,
         } * clock.uncertainty;
-        let (meaning, factor, mut of_factor) = scale(machine, &units, fit.frequency);
-        of_factor.extend([(Source::Gain, gain), (Source::Clock, by_clock)]);
+        let (meaning, factor, mut of_factor) = scale(machine, form, &units, fit.frequency);
+        // Friction beside a measured force is as wrong as that is, whatever the response reads.
+        if !is_forced {
+            of_factor.extend([(Source::Gain, gain), (Source::Clock, by_clock)]);
+        }
         let unit = match meaning {
             Meaning::Coefficient => Unit::default().to_string(),
             Meaning::Force => units.with_forces().map_or_else(|| "N".to_owned(), |units| units.force.to_string()),
@@ -193,6 +204,11 @@ impl FrictionCurve {
                  friction over speed acts, such as a spring that is not linear or friction that changes in time"
             ));
         }
+        if fit.is_held {
+            let what = "the contact holds more than it slides with: a static level is fitted beside the curve, and near \
+                        rest the record hardly tells one from the other";
+            limits.push(what.to_owned());
+        }
         Ok(Self {
             speeds: KNOTS.map(|s| s * fit.top),
             speed_unit: units.velocity().to_string(),
@@ -204,6 +220,7 @@ impl FrictionCurve {
             freedom: fit.freedom,
             path: fit.path,
             slowest: fit.slowest,
+            form,
             meaning,
             unit,
             is_whole: machine.damping().is_none(),
@@ -334,9 +351,12 @@ impl FrictionCurve {
         const POINTS: u32 = 100;
         let (model, values) = (&found.fitted.model, found.fit().values());
         let (table, _) = Table::of(model, found.machine(), experiments).ok()?;
+        // The law may be fitted per mass where the curve is one of forces.
+        let mass = (self.form == Form::Force && table.is_per_mass()).then(|| table.mass(found.machine(), values));
+        let factor = self.unit_factor * mass.flatten().unwrap_or(1.0);
         let at = |step: u32| {
             let speed = self.speeds[LEVELS - 1] * (f64::from(step) / f64::from(POINTS)).powi(2);
-            Some((speed, self.unit_factor * friction(&table, values, speed, false)?))
+            Some((speed, factor * friction(&table, values, speed, false)?))
         };
         (1..=POINTS).map(at).collect()
     }
@@ -368,16 +388,16 @@ fn unit_weights(i: usize) -> [f64; LEVELS] {
 }
 
 /// Meaning of the curve, its unit over that of the problem, and the relative standard uncertainties of that factor.
-fn scale(machine: &Machine, units: &Units, frequency: f64) -> (Meaning, f64, Vec<(Source, f64)>) {
+fn scale(machine: &Machine, form: Form, units: &Units, frequency: f64) -> (Meaning, f64, Vec<(Source, f64)>) {
     let relative = |source: Source, known: Known| (source, known.uncertainty() / known.value());
     let mass = match machine.scale() {
+        // The problem has forces, with mass and stiffness among its own quantities.
+        _ if form == Form::Force => Some((1.0, Vec::new())),
         Scale::Mass(mass) => Some((mass.value(), vec![relative(Source::Mass, mass)])),
         Scale::Stiffness(stiffness) => {
             let mass = mass_of_stiffness(stiffness.value(), frequency);
             Some((mass, vec![relative(Source::Stiffness, stiffness)]))
         }
-        // The problem has forces, with mass and stiffness among its own quantities.
-        Scale::MassAndStiffness(..) => Some((1.0, Vec::new())),
         _ => None,
     };
     let Some((force, mut of_factor)) = mass.filter(|_| units.with_forces().is_some()) else {

@@ -71,8 +71,8 @@ impl ShownFriction {
         experiments: &[Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        let Levelled { problem, values, top, scale, line, line_squares } =
-            Levelled::of(machine, &terms, experiments, end)?;
+        let Levelled { problem, values, top, scale, line, line_squares, .. } =
+            Levelled::of(Table::form(machine), machine, &terms, experiments, end)?;
         let problem = problem.simulated_roughly();
         let settled = Settled::of(&problem, values, scale, MOST_STEPS_OF_PROJECTION, end)?;
         let squares = line_squares.min(settled.near.sum_of_squares());

@@ -55,6 +55,16 @@ pub(crate) enum Scale {
 }
 
 impl Scale {
+    /// Mass (kg) and stiffness (N/m), as far as they are known.
+    pub(crate) fn known(self) -> (Option<Known>, Option<Known>) {
+        match self {
+            Self::Mass(mass) => (Some(mass), None),
+            Self::Stiffness(stiffness) => (None, Some(stiffness)),
+            Self::MassAndStiffness(mass, stiffness) => (Some(mass), Some(stiffness)),
+            Self::PerUnitMass | Self::Unknown => (None, None),
+        }
+    }
+
     /// The same with its known values changed.
     fn map(self, change: impl Fn(Known) -> Known) -> Self {
         match self {

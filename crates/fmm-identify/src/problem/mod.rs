@@ -11,7 +11,7 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::sight::{Seen, Sight};
 use crate::experiment::{Experiment, Experiments, scaled};
-use crate::law::naming::Units;
+use crate::law::naming::{Form, Units};
 use crate::law::{Law, Motion, Simulate};
 use crate::machine::term::Term;
 use crate::machine::{Machine, Scale, Terms};
@@ -85,8 +85,18 @@ impl<'a> Problem<'a> {
             Experiments::Vibrations(experiments) => experiments,
             Experiments::Forces(records) => return Self::of_forces(candidate, machine, records),
         };
+        Self::in_form(Table::form(&machine), candidate, machine, experiments)
+    }
+
+    /// The problem of vibrations with forces in this `form`.
+    pub(crate) fn in_form(
+        form: Form,
+        candidate: &Candidate,
+        machine: Machine,
+        experiments: &'a [Experiment],
+    ) -> Result<Self, IdentifyError> {
         require_together(&machine, experiments)?;
-        let (table, parameters) = Table::of(candidate, &machine, experiments)?;
+        let (table, parameters) = Table::by(form, candidate, &machine, experiments)?;
         Ok(Self::by(machine, Cow::Borrowed(experiments), table, parameters))
     }
 

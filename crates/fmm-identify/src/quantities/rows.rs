@@ -131,13 +131,11 @@ pub(super) fn oscillator(machine: &Machine, experiments: &[Experiment], form: Fo
                 _ => {}
             }
         }
-        (_, Scale::MassAndStiffness(mass, stiffness)) => {
-            rows.push(Place::Mass, None, MASS, known(mass, Source::Mass));
-            rows.push(Place::Stiffness, None, STIFFNESS, known(stiffness, Source::Stiffness));
-        }
-        _ => {
-            rows.free(Place::Mass, MASS);
-            rows.free(Place::Stiffness, STIFFNESS);
+        (_, scale) => {
+            let (mass, stiffness) = scale.known();
+            let or_free = |of: Option<Known>, source| of.map_or(Knowledge::Free, |of| known(of, source));
+            rows.push(Place::Mass, None, MASS, or_free(mass, Source::Mass));
+            rows.push(Place::Stiffness, None, STIFFNESS, or_free(stiffness, Source::Stiffness));
         }
     }
     let is_declared = form == Form::Coefficient;

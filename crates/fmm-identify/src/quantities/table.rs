@@ -88,17 +88,21 @@ fn require_spring(machine: &Machine, terms: &Terms, experiments: &[Experiment]) 
 }
 
 impl Table {
+    /// Form in which forces of the `machine` are fitted.
+    pub(crate) fn form(machine: &Machine) -> Form {
+        match machine.scale() {
+            Scale::Unknown | Scale::MassAndStiffness(..) => Form::Force,
+            _ => Form::PerMass,
+        }
+    }
+
     /// Table and parameters of a law with its terms for these experiments.
     pub(crate) fn of(
         candidate: &Candidate,
         machine: &Machine,
         experiments: &[Experiment],
     ) -> Result<(Self, Vec<Parameter>), IdentifyError> {
-        let form = match machine.scale() {
-            Scale::Unknown | Scale::MassAndStiffness(..) => Form::Force,
-            _ => Form::PerMass,
-        };
-        Self::by(form, candidate, machine, experiments)
+        Self::by(Self::form(machine), candidate, machine, experiments)
     }
 
     /// The same by these `form`.

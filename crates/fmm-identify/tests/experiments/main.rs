@@ -4,6 +4,7 @@
 mod acceleration;
 mod design;
 mod driven;
+mod driven_curve;
 mod force;
 mod force_curves;
 mod force_models;
