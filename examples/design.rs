@@ -1,8 +1,9 @@
-//! Predicted uncertainties of five designs beside the scatter of simulated refits:
-//! `cargo run --release --example design -- [--refits 1000]`.
+//! Predicted uncertainties of designs beside the scatter of simulated refits and friction curves:
+//! `cargo run --release --example design -- [--refits 1000] [--curves 200]`.
 //!
-//! Every refit is one of records with fresh noise, begun at the truth, by the joint problem of the library. What it
-//! showed is in docs/study.md. The time that a plan takes for each candidate is printed as well.
+//! Every refit is one of records with fresh noise, begun at the truth, by the joint problem of the library; every curve
+//! is of such records too. What it showed is in docs/study.md. The time that a plan takes for each candidate is printed
+//! as well.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -10,9 +11,9 @@ use std::time::Instant;
 
 use clap::Parser;
 use fmm_fit::{Options, Residuals, solve};
-use fmm_friction::{Berger, CoulombViscous, LawFamily};
+use fmm_friction::{Berger, CoulombViscous, LawFamily, SlidingLaw, Stribeck};
 use fmm_identify::{
-    Candidate, DesignPrediction, Experiment, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest, Preparation,
+    Candidate, DesignPrediction, Experiment, FrictionCurve, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest, Preparation,
     Problem,
 };
 use fmm_model::Oscillator;
@@ -29,6 +30,9 @@ struct Arguments {
     /// Refits of each design
     #[arg(long, default_value_t = 1000)]
     refits: u64,
+    /// Friction curves of each design
+    #[arg(long, default_value_t = 200)]
+    curves: u64,
 }
 
 const MASS: f64 = 10.391;
@@ -120,8 +124,63 @@ fn report<F: LawFamily>(name: &str, law: &[f64], tests: &[Test], refits: u64) ->
     Ok(())
 }
 
+/// Releases (m) of the plan of friction curves, and speeds (m/s) at which friction is asked for.
+const RELEASES: [f64; 2] = [0.012, 0.022];
+const SPEEDS: [f64; 4] = [0.0, 0.002, 0.02, 0.1];
+
+/// Predicted and found uncertainties of friction at some speeds, without a law, by each test and by both.
+fn report_curves<F: LawFamily>(name: &str, law: &[f64], curves: u64) -> Result<(), Box<dyn Error>>
+where
+    F::At<f64>: SlidingLaw<f64>,
+{
+    let frequency = (STIFFNESS / MASS).sqrt() / TAU;
+    let guess = Guess::new(machine()?, &Candidate::of::<F>(), frequency, law, &[])?;
+    let sensor = PlannedSensor::new(Quantity::Velocity, NOISE)?;
+    let tests = RELEASES.iter().map(|release| PlannedTest::release(*release, sensor, RATE, SAMPLES as f64 / RATE));
+    let plan = Plan::new(guess, tests.collect::<Result<_, _>>()?)?;
+    let (planned, normal) = (plan.curve()?, Normal::new(0.0, NOISE)?);
+    for set in [&[0][..], &[1], &[0, 1]] {
+        let predicted = planned.predict(set)?;
+        let clean: Vec<Vec<f64>> =
+            set.iter().map(|place| motion::<F>(law, (RELEASES[*place], LOAD))).collect::<Result<_, _>>()?;
+        let mut found = Vec::new();
+        for seed in 0..curves {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let decay = |values: &Vec<f64>| {
+                let values = values.iter().map(|value| value + normal.sample(&mut random)).collect();
+                let record = Record::sampled(RATE, values, Quantity::Velocity, "m/s")?;
+                Ok(Experiment::ring_down(&record, &Preparation::default())?)
+            };
+            let decays = clean.iter().map(decay).collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+            found.extend(FrictionCurve::of(&machine()?, &decays));
+        }
+        for speed in SPEEDS {
+            let level = predicted.at(speed).ok_or("the tests reach it")?;
+            let mut levels: Vec<(f64, f64)> =
+                found.iter().filter_map(|curve| curve.at(speed)).map(|one| (one.value(), one.uncertainty())).collect();
+            let (count, truth) = (levels.len() as f64, F::at(law)?.coefficient(speed));
+            let rms = |of: &dyn Fn(&(f64, f64)) -> f64| {
+                100.0 / truth * (levels.iter().map(|one| of(one).powi(2)).sum::<f64>() / count).sqrt()
+            };
+            let (off, all) = (rms(&|(value, _)| value - truth), rms(&|(_, u)| *u));
+            levels.sort_by(|a, b| a.1.total_cmp(&b.1));
+            let median = levels[levels.len() / 2].1;
+            println!(
+                "| {name} | {} | {} | {:.3} | {:.3} | {all:.3} | {off:.3} | {count} |",
+                set.iter().map(|place| format!("{} mm", 1e3 * RELEASES[*place])).collect::<Vec<_>>().join(", "),
+                1e3 * speed,
+                100.0 * level.uncertainty() / truth,
+                100.0 * median / truth,
+            );
+        }
+    }
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { refits } = Arguments::parse();
+    let Arguments { refits, curves } = Arguments::parse();
+    report_curves::<CoulombViscous>("coulomb_viscous", &[0.25, 0.02], curves)?;
+    report_curves::<Stribeck>("stribeck", &[0.25, 0.3, 0.06, 2.0, 0.05], curves)?;
     let berger = [0.228, 0.261, 2.852];
     let viscous = [0.25, 0.002];
     println!("{:<44} {:>11} {:>11} {:>8} {:>6}", "design", "predicted", "scatter", "ratio", "fits");

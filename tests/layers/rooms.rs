@@ -21,7 +21,7 @@ const ROOMS: &[(&str, &str)] = &[
     (
         "fmm-identify",
         "written error finding law linear_algebra machine candidate threads warning experiment quantities problem residuals \
-         fit identification design friction_curve judgement posterior report",
+         fit identification friction_curve design judgement posterior report",
     ),
     (
         "fmm-model",

@@ -149,7 +149,7 @@ mod solver;
 mod uncertainty;
 
 pub use comparison::FTest;
-pub use design::design_case::{DesignCase, DesignCriterion};
+pub use design::design_case::{DesignCase, DesignCriterion, DesignUncertainty};
 pub use design::information::Information;
 pub use design::search::{ChosenDesign, DesignSearch};
 pub use diagnostics::{autocorrelation, autocorrelation_time, effective_count};

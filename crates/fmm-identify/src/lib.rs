@@ -128,7 +128,7 @@ mod warning;
 mod written;
 
 pub use candidate::Candidate;
-pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};
+pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedCurve, PlannedSensor, PlannedTest};
 pub use error::IdentifyError;
 pub use experiment::force::{ForceLoop, ForceRecord, Onset, SpeedBin};
 pub use experiment::{

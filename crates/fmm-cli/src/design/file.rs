@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::fmt;
 
 use fmm_identify::{Aim, Candidate, Guess, Machine, PlannedTest};
 use fmm_model::{Oscillator, Rounded};
@@ -58,7 +59,7 @@ struct Guessed {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Choose {
-    pub(super) aim: String,
+    pub(super) aim: OfAim,
     pub(super) tests: Option<usize>,
     pub(super) budget: Option<f64>,
     pub(super) robust: Option<Robust>,
@@ -66,6 +67,14 @@ pub(super) struct Choose {
     pub(super) draws: usize,
     #[serde(default = "seed")]
     pub(super) seed: u64,
+}
+
+/// What is to become certain.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged, deny_unknown_fields, expecting = "a name in quotes, or { friction_at = … } with a speed in m/s")]
+pub(super) enum OfAim {
+    Name(String),
+    FrictionAt { friction_at: f64 },
 }
 
 /// Over what may be guessed wrong: the mean of ln u, or the worst.
@@ -96,13 +105,26 @@ fn numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String
     entries.into_iter().map(number).collect()
 }
 
-impl Choose {
+impl OfAim {
     /// Aim of the choice.
     pub(super) fn aim(&self) -> Aim {
-        match self.aim.as_str() {
-            "determinant" => Aim::Determinant,
-            "mean variance" => Aim::MeanVariance,
-            name => Aim::finding(name),
+        match self {
+            Self::Name(name) => match name.as_str() {
+                "determinant" => Aim::Determinant,
+                "mean variance" => Aim::MeanVariance,
+                name => Aim::finding(name),
+            },
+            Self::FrictionAt { friction_at } => Aim::FrictionAt(*friction_at),
+        }
+    }
+}
+
+impl fmt::Display for OfAim {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => f.write_str(name),
+            Self::FrictionAt { friction_at: 0.0 } => f.write_str("friction at rest"),
+            Self::FrictionAt { friction_at } => write!(f, "friction at {} m/s", Rounded::every_digit(*friction_at)),
         }
     }
 }

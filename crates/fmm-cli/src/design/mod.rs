@@ -15,7 +15,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use fmm_identify::{Aim, DesignPrediction, Finding, Plan};
+use fmm_identify::{Aim, DesignPrediction, Finding, FrictionCurve, FrictionLevel, Plan};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Detail, Document};
@@ -50,6 +50,9 @@ struct Row {
     cost: f64,
     /// Standard uncertainty of the aim by this test alone; none if it does not determine the aim.
     u: Option<f64>,
+    /// Friction at the speed that is aimed at, as a curve of this test alone would have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<FrictionLevel>,
     told: String,
 }
 
@@ -63,6 +66,12 @@ struct Set {
     cost: f64,
     is_exhaustive: bool,
     findings: BTreeMap<String, Finding>,
+    /// Friction at the speed that is aimed at, as the curve has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<FrictionLevel>,
+    /// Friction over the speed that the set would show without a law, if the aim is of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction_curve: Option<FrictionCurve>,
     stays_free: Vec<String>,
     hardly_told_apart: Vec<(String, String, f64)>,
     /// Information of each test that the others do not have.
@@ -148,7 +157,7 @@ pub(crate) fn of_document(document: &str) -> Result<(String, String), Box<dyn Er
 
 fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
     let Wanted { guess, tests, settings, choose } = wanted;
-    let aim = choose.aim();
+    let aim = choose.aim.aim();
     let samples = choose.robust.map(|_| guess.draws(choose.draws, choose.seed));
     let plan = Plan::new(guess, tests)?;
     let search = match (&samples, choose.robust) {
@@ -157,6 +166,10 @@ fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
         (None, _) => plan.search(&aim)?,
     };
     let search = search.with_seed(choose.seed);
+    let speed = match aim {
+        Aim::FrictionAt(speed) => Some((speed, plan.curve()?)),
+        _ => None,
+    };
     let costs: Vec<f64> = plan.tests().iter().map(fmm_identify::PlannedTest::cost).collect();
     let best = match (choose.tests, choose.budget) {
         (Some(tests), _) => search.best(tests)?,
@@ -165,6 +178,7 @@ fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
     let uncertainty = |set: &[usize], prediction: &DesignPrediction| -> Result<Option<f64>, Box<dyn Error>> {
         Ok(match &aim {
             Aim::Finding(name) => prediction.relative_uncertainty(name),
+            Aim::FrictionAt(_) => Some(search.score(set)?.exp()),
             _ if prediction.null_directions().is_empty() => Some(search.score(set)?.exp()),
             _ => None,
         })
@@ -177,6 +191,10 @@ fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
             settings,
             cost: test.cost(),
             u,
+            friction: match &speed {
+                Some((speed, curve)) => curve.predict(&[place])?.at(*speed),
+                None => None,
+            },
             told: plan.sentence_alone(place)?,
         });
     }
@@ -196,6 +214,17 @@ fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
     };
     let prediction = plan.predict(best.measurements())?;
     let close = prediction.close_pairs().into_iter();
+    let friction_curve = speed.as_ref().map(|(_, curve)| curve.predict(best.measurements())).transpose()?;
+    let friction = friction_curve.as_ref().zip(speed).and_then(|(curve, (speed, _))| curve.at(speed));
+    let mut told = plan.sentences_of_each(best.measurements())?;
+    if friction.is_some() {
+        for (place, told) in &mut told {
+            let others: Vec<usize> = best.measurements().iter().copied().filter(|other| other != place).collect();
+            let ratio = (search.score(&others)? - search.score(best.measurements())?).exp();
+            *told = format!("without it, u of {} would be {ratio:.2} times as large; by the law, {told}", choose.aim);
+        }
+    }
+    let by_curve = friction.as_ref().map_or_else(String::new, |level| format!("  {} = {level}\n", choose.aim));
     let best = Set {
         chosen: best.counts(),
         u: uncertainty(best.measurements(), &prediction)?,
@@ -204,10 +233,12 @@ fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
         findings: prediction.findings().iter().map(|one| (one.parameter().name().to_owned(), one.clone())).collect(),
         stays_free: prediction.null_directions().iter().map(ToString::to_string).collect(),
         hardly_told_apart: close.map(|(a, b, r)| (a.to_owned(), b.to_owned(), r)).collect(),
-        told: plan.sentences_of_each(best.measurements())?,
-        text: prediction.to_string(),
+        friction,
+        friction_curve,
+        told,
+        text: format!("{by_curve}{prediction}"),
     };
-    Ok(Choice { aim: choose.aim, tests: rows, single, for_its_cost, best, repeats, told: None })
+    Ok(Choice { aim: choose.aim.to_string(), tests: rows, single, for_its_cost, best, repeats, told: None })
 }
 
 fn percent(u: Option<f64>) -> String {
@@ -295,6 +326,31 @@ mod tests {
         assert!(answer.tests[0].told.contains("static_excess_friction_per_mass has no influence"));
     }
 
+    /// Friction at a speed without a law: the set tells more than any of its tests.
+    #[test]
+    fn friction_at_a_speed_is_an_aim() {
+        let plan = |speed: &str| {
+            let file = EXAMPLE.replace("normal_load = [3.5, 7, 14]      # N", "");
+            Wanted::of_toml(&file.replace("aim = \"mu\"", &format!("aim = {{ friction_at = {speed} }}"))).unwrap()
+        };
+        let slow = answer(plan("0.002")).unwrap();
+        let curve = slow.best.friction_curve.as_ref().unwrap();
+        assert_eq!((curve.unit(), slow.tests.len()), ("1", 3));
+        let friction = slow.best.friction.as_ref().unwrap();
+        // Berger's law in the guess: 0.228 + 0.033 exp(−0.002 · …), which is close to 0.261.
+        assert!((friction.value() - 0.26).abs() < 0.002, "{friction}");
+        let relative = friction.uncertainty() / friction.value();
+        assert!((relative / slow.best.u.unwrap() - 1.0).abs() < 0.02, "{relative} {:?}", slow.best.u);
+        assert!(slow.tests.iter().all(|test| test.friction.as_ref().unwrap().uncertainty() > friction.uncertainty()));
+        let text = text(&slow);
+        for part in ["u of friction at 0.002 m/s, relative", "  friction at 0.002 m/s = 0.26", "without it, u of friction"] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+        assert_eq!(answer(plan("0")).unwrap().aim, "friction at rest");
+        let fast = answer(plan("0.4")).unwrap_err().to_string();
+        assert!(fast.contains("highest speed of all tests") && fast.contains("larger release"), "{fast}");
+    }
+
     #[test]
     fn what_is_wrong_in_a_file_is_named() {
         for (wrong, right, part) in [
@@ -315,6 +371,8 @@ mod tests {
             ("cost = 5", "cost = 0", "cost of a test"),
             ("cost = 5", "price = 5", "price"),
             ("aim = \"mu\"", "aim = \"my\"", "\"my\""),
+            ("aim = \"mu\"", "aim = { friction_at = 0.002 }", "release 0.008 m, normal load 3.5 N: friction over speed"),
+            ("aim = \"mu\"", "aim = { friction = 0.002 }", "{ friction_at = … } with a speed in m/s"),
             ("tests = 3", "", "tests, their number, or budget"),
             (
                 "law = \"berger\"\nvalues = { ",

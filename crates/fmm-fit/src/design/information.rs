@@ -61,6 +61,11 @@ impl Information {
         Self { order, elements: vec![0.0; order * order] }
     }
 
+    /// The matrix of these elements, row by row.
+    pub(crate) const fn of_elements(order: usize, elements: Vec<f64>) -> Self {
+        Self { order, elements }
+    }
+
     /// Information of measurements of unit variance whose derivatives by the `order` parameters are `rows`, one after
     /// the other.
     ///

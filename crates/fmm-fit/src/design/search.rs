@@ -213,7 +213,10 @@ impl ChosenDesign {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::design::design_case::DesignUncertainty;
     use crate::design::information::Information;
 
     fn line(places: &[f64]) -> DesignCase {
@@ -233,6 +236,32 @@ mod tests {
         assert!(all.is_exhaustive && !found.is_exhaustive(), "{all:?} {found:?}");
         assert!((all.score - found.score).abs() < 1e-12, "{all:?} {found:?}");
         assert!(found.measurements().iter().map(|place| costs[*place]).sum::<f64>() <= 7.0);
+    }
+
+    /// u of the slope of a line, by itself.
+    #[derive(Debug)]
+    struct Slope;
+
+    impl DesignUncertainty for Slope {
+        fn logarithm(&self, information: &Information) -> f64 {
+            let variance = information.variance(&[0.0, 1.0]).unwrap();
+            0.5 * variance.unwrap_or(1e9).ln()
+        }
+    }
+
+    /// An uncertainty that somebody computes is made small as that of a combination is.
+    #[test]
+    fn an_uncertainty_of_ones_own_is_made_small() {
+        let candidates: Vec<Information> =
+            [-1.0, -0.2, 0.4, 0.9].map(|x| Information::of_rows(2, &[1.0, x]).unwrap()).to_vec();
+        let none = Information::none(2);
+        let own = DesignCase::of_uncertainty(none.clone(), candidates.clone(), Arc::new(Slope)).unwrap();
+        let combination = DesignCase::new(none.clone(), candidates, vec![vec![0.0, 1.0]]).unwrap();
+        let best = |case| DesignSearch::new(vec![case], DesignCriterion::MeanVariance).unwrap().best(3).unwrap();
+        let (own, combination) = (best(own), best(combination));
+        assert_eq!(own.measurements(), combination.measurements());
+        assert!((own.score() - combination.score()).abs() < 1e-8, "{own:?} {combination:?}");
+        assert!(DesignCase::of_uncertainty(none, vec![], Arc::new(Slope)).is_err());
     }
 
     #[test]

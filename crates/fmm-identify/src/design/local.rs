@@ -13,6 +13,7 @@ use crate::design::planned_test::{Load, Motion};
 use crate::design::{Guess, PlannedTest};
 use crate::error::IdentifyError;
 use crate::experiment::{Drive, Experiment};
+use crate::friction_curve::Path;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::is_force;
 use crate::machine::Scale;
@@ -165,7 +166,9 @@ impl Local<'_> {
     }
 
     /// The experiment that `test` would be.
-    fn experiment(&self, test: &PlannedTest, frequency: f64) -> Result<Experiment, IdentifyError> {
+    pub(crate) fn experiment(&self, test: &PlannedTest) -> Result<Experiment, IdentifyError> {
+        let shared: Vec<f64> = self.of_test(test, 0);
+        let frequency = if self.layout.is_per_mass() { shared[0] } else { (shared[1] / shared[0]).sqrt() / (2.0 * PI) };
         let factor = match (test.load, self.guess.machine.normal_load()) {
             (Load::OfMachine, _) => 1.0,
             (Load::None, _) => 0.0,
@@ -191,41 +194,59 @@ impl Local<'_> {
         Experiment::planned(record, drive, is_at_rest, frequency, test.sensor.noise(), offset).with_load_factor(factor)
     }
 
-    /// Information of `test` about the shared parameters and the inputs, in this order.
-    pub(crate) fn information(&self, test: &PlannedTest) -> Result<Information, IdentifyError> {
-        let name = self.guess.model.law_name();
-        let failed = |source| design_error(name, source);
+    /// The problem of `test`, which would be the one of these `experiments`, and its values.
+    fn problem<'a>(
+        &self,
+        test: &PlannedTest,
+        experiments: &'a [Experiment],
+    ) -> Result<(Problem<'a>, Vec<f64>), IdentifyError> {
         let shared: Vec<f64> = self.of_test(test, 0);
-        let frequency = if self.layout.is_per_mass() { shared[0] } else { (shared[1] / shared[0]).sqrt() / (2.0 * PI) };
-        let experiments = [self.experiment(test, frequency)?];
         let machine = self.machine(test, &self.guess.machine)?;
         let model = &self.guess.model;
         let model = Candidate { law: model.law.with_held_breakaway(), ..model.clone() };
-        let own = Problem::of(&model, machine, &experiments)?.without_prior();
-        let of_problem = own.table.shared;
-        let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
-        // Each shared row of the problem is one of the guess, or something known of the machine.
-        let input = |row: &Row| match row.place {
-            Place::MachineDamping => self.inputs.find(Input::Damping),
-            _ => self.inputs.find(Input::Scale),
-        };
-        let rows: Vec<(Option<usize>, &Row)> =
-            own.parameters()[..of_problem].iter().map(place).zip(&own.table.rows).collect();
+        let problem = Problem::of(&model, machine, experiments)?.without_prior();
         let state = |parameter: &Parameter| match (parameter.name(), &test.motion) {
             ("initial_position", Motion::Released(position)) => *position,
             ("force_gain" | "base_gain", _) => 1.0,
             _ => 0.0,
         };
-        let of_row = |(place, row): &(Option<usize>, &Row)| match (place, row.knowledge) {
-            (Some(place), _) => shared[*place],
+        let of_row = |(place, row): (Option<usize>, &Row)| match (place, row.knowledge) {
+            (Some(place), _) => shared[place],
             (None, Knowledge::Prior { value, .. } | Knowledge::Fixed(value)) => value,
             (None, Knowledge::Free) => 0.0,
         };
-        let values: Vec<f64> =
-            rows.iter().map(of_row).chain(own.parameters()[of_problem..].iter().map(state)).collect();
-        let information = Information::of_problem(&own, &values, of_problem);
+        let own = problem.parameters()[problem.table.shared..].iter().map(state);
+        let values = self.rows(&problem).map(of_row).chain(own).collect();
+        Ok((problem, values))
+    }
+
+    /// Each shared row of the `problem` of a test: it is one of the guess, with its place, or something known of the
+    /// machine.
+    fn rows<'a>(&'a self, problem: &'a Problem<'_>) -> impl Iterator<Item = (Option<usize>, &'a Row)> {
+        let place = |parameter: &Parameter| self.guess.parameters.iter().position(|one| one.name() == parameter.name());
+        problem.parameters()[..problem.table.shared].iter().map(place).zip(&problem.table.rows)
+    }
+
+    /// Path of the motion of `test`.
+    pub(crate) fn path(&self, test: &PlannedTest) -> Result<Path, IdentifyError> {
+        let experiments = [self.experiment(test)?];
+        let (problem, values) = self.problem(test, &experiments)?;
+        Path::of(&problem, &values).map_err(|error| IdentifyError::simulation(self.guess.model.law_name(), error))
+    }
+
+    /// Information of `test` about the shared parameters and the inputs, in this order.
+    pub(crate) fn information(&self, test: &PlannedTest) -> Result<Information, IdentifyError> {
+        let failed = |source| design_error(self.guess.model.law_name(), source);
+        let experiments = [self.experiment(test)?];
+        let (own, values) = self.problem(test, &experiments)?;
+        let information = Information::of_problem(&own, &values, own.table.shared);
         let information =
             information.and_then(|information| information.scaled(test.sensor.noise().powi(-2))).map_err(failed)?;
+        let rows: Vec<(Option<usize>, &Row)> = self.rows(&own).collect();
+        let input = |row: &Row| match row.place {
+            Place::MachineDamping => self.inputs.find(Input::Damping),
+            _ => self.inputs.find(Input::Scale),
+        };
 
         let directions = self.directions();
         let mut derivatives = vec![0.0; rows.len() * directions];

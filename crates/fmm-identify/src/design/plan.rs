@@ -5,7 +5,7 @@ use fmm_fit::{ChosenDesign, DesignCase, DesignCriterion, DesignSearch, Informati
 use crate::design::inputs::{Input, Inputs};
 use crate::design::local::{self, Local};
 use crate::design::prediction::Quantity;
-use crate::design::{DesignPrediction, Guess, PlannedTest};
+use crate::design::{DesignPrediction, Guess, PlannedCurve, PlannedTest};
 use crate::error::IdentifyError;
 use crate::finding::{Finding, Origin};
 use crate::quantities::derived::derived;
@@ -36,16 +36,16 @@ use crate::quantities::table::Table;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
-    guess: Guess,
-    tests: Vec<PlannedTest>,
-    inputs: Inputs,
-    layout: Table,
-    known: Information,
-    of_tests: Vec<Information>,
+    pub(super) guess: Guess,
+    pub(super) tests: Vec<PlannedTest>,
+    pub(super) inputs: Inputs,
+    pub(super) layout: Table,
+    pub(super) known: Information,
+    pub(super) of_tests: Vec<Information>,
 }
 
 /// Aim of a plan: the uncertainty that is to become small.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Aim {
     /// u of the finding of this name (c-optimal).
@@ -54,6 +54,10 @@ pub enum Aim {
     Determinant,
     /// The mean square of the relative standard uncertainties of all parameters that tests share (A-optimal).
     MeanVariance,
+    /// u of the friction at this speed (m/s, or that of the [`Guess`]; 0 is at rest) as a
+    /// [`FrictionCurve`](crate::FrictionCurve) of the tests would have it, without a law: see [`PlannedCurve`]. What a
+    /// pilot told of its law does not count.
+    FrictionAt(f64),
 }
 
 impl Aim {
@@ -170,15 +174,15 @@ impl Plan {
         fitted.chain(followed).collect()
     }
 
-    /// The combinations of parameters that `aim` asks for if the shared ones have these values, relative to their
-    /// values where these are not zero.
-    fn combinations(&self, aim: &Aim, values: &[f64]) -> Result<Vec<Vec<f64>>, IdentifyError> {
+    /// The tests and what `aim` asks for if the shared parameters have these `values`, relative to its value where that
+    /// is not zero.
+    fn case(&self, aim: &Aim, values: &[f64]) -> Result<DesignCase, IdentifyError> {
         let quantities = self.quantities(values);
         let relative = |quantity: &Quantity| {
             let size = if quantity.value == 0.0 { 1.0 } else { quantity.value.abs() };
             quantity.gradient.iter().map(|slope| slope / size).collect::<Vec<f64>>()
         };
-        match aim {
+        let combinations = match aim {
             Aim::Finding(name) => {
                 let found = quantities.iter().find(|quantity| quantity.parameter.name() == name);
                 let names =
@@ -186,23 +190,36 @@ impl Plan {
                 let found = found.ok_or_else(|| IdentifyError::UnknownName {
                     what: format!("no test finds anything called {name:?}; the findings are: {}", names()),
                 })?;
-                Ok(vec![relative(found)])
+                vec![relative(found)]
             }
             Aim::Determinant | Aim::MeanVariance => {
                 let free = |quantity: &&Quantity| quantity.is_fitted && !quantity.parameter.bounds().is_fixed();
-                Ok(quantities.iter().filter(free).map(relative).collect())
+                quantities.iter().filter(free).map(relative).collect()
             }
-        }
+            Aim::FrictionAt(speed) => return PlannedCurve::of(self, values)?.case(*speed),
+        };
+        let of_tests =
+            if values == self.guess.values { self.of_tests.clone() } else { self.information_at(values)? };
+        let case = DesignCase::new(self.known.clone(), of_tests, combinations);
+        case.map_err(|source| local::design_error(self.guess.model.law_name(), source))
+    }
+
+    /// Friction over the speed that the tests would show without a law, at the guess.
+    ///
+    /// # Errors
+    /// [`IdentifyError::WrongRecord`] for a driven test, [`IdentifyError::Contradiction`] for one under another load or
+    /// with a mass or a spring of its own, and for a law that states no friction over the speed.
+    pub fn curve(&self) -> Result<PlannedCurve, IdentifyError> {
+        PlannedCurve::of(self, &self.guess.values)
     }
 
     /// The search for tests that make the `aim` small, at the guess.
     ///
     /// # Errors
-    /// [`IdentifyError::UnknownName`] for a finding that no test has.
+    /// [`IdentifyError::UnknownName`] for a finding that no test has; of a friction at a speed those of
+    /// [`curve`](Self::curve), and [`IdentifyError::OutOfRange`] for a speed that no test reaches.
     pub fn search(&self, aim: &Aim) -> Result<DesignSearch, IdentifyError> {
-        let combinations = self.combinations(aim, &self.guess.values)?;
-        let case = DesignCase::new(self.known.clone(), self.of_tests.clone(), combinations);
-        self.searched(case.map(|case| vec![case]), aim)
+        self.robust_search(aim, std::slice::from_ref(&self.guess.values))
     }
 
     /// The search for tests that make the `aim` small over several `samples` of the shared values, such as
@@ -225,28 +242,15 @@ impl Plan {
                 "there is no sample of the values to be robust over; give at least one",
             ));
         }
-        let mut cases = Vec::with_capacity(samples.len());
-        for sample in samples {
-            let combinations = self.combinations(aim, sample)?;
-            cases.push((self.information_at(sample)?, combinations));
+        if let Aim::FrictionAt(speed) = aim {
+            self.curve()?.require_reached(*speed)?;
         }
-        let cases = cases
-            .into_iter()
-            .map(|(of_tests, combinations)| DesignCase::new(self.known.clone(), of_tests, combinations))
-            .collect::<Result<Vec<_>, _>>();
-        self.searched(cases, aim)
-    }
-
-    fn searched(
-        &self,
-        cases: Result<Vec<DesignCase>, fmm_fit::FitError>,
-        aim: &Aim,
-    ) -> Result<DesignSearch, IdentifyError> {
+        let cases = samples.iter().map(|sample| self.case(aim, sample)).collect::<Result<Vec<_>, _>>()?;
         let criterion = match aim {
             Aim::Determinant => DesignCriterion::Determinant,
-            Aim::Finding(_) | Aim::MeanVariance => DesignCriterion::MeanVariance,
+            Aim::Finding(_) | Aim::MeanVariance | Aim::FrictionAt(_) => DesignCriterion::MeanVariance,
         };
-        let search = cases.and_then(|cases| DesignSearch::new(cases, criterion));
+        let search = DesignSearch::new(cases, criterion);
         search.map_err(|source| local::design_error(self.guess.model.law_name(), source))
     }
 

@@ -50,9 +50,10 @@ pub(super) struct CurveFit {
 }
 
 /// Motion of all records: speeds at dense times, and the lowest at the samples of each half cycle.
-struct Path {
+#[derive(Debug, Clone)]
+pub(crate) struct Path {
     speeds: Vec<f64>,
-    slowest: f64,
+    lowest: Vec<f64>,
 }
 
 /// The problem of levels, about the fit by Coulomb and viscous friction.
@@ -88,7 +89,7 @@ impl<'a> Levelled<'a> {
         let line = fit_begun(&simple, Begin::Anywhere, &options, &mut observer)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         let path = Path::of(&simple, line.values()).map_err(failure)?;
-        let top = path.speeds.iter().copied().fold(0.0, f64::max);
+        let top = path.top();
         let (first, shared) = (simple.table.law, simple.table.shared);
         let [level, slope] = [line.values()[first], line.values()[first + 1]];
         let mean = path.weights(top).map(f64::from);
@@ -159,12 +160,12 @@ impl CurveFit {
         Ok(Self {
             top,
             scale,
-            sources: Sources::of(&posterior, &likelihood, scale),
+            sources: Sources::of(&posterior, &likelihood.precision, &likelihood.by_declared, scale),
             posterior,
             freedom: likelihood.freedom,
             frequency: problem.table.shared(Place::Frequency).map_or(0.0, |index| values[index]),
             path: path.weights(top),
-            slowest: path.slowest,
+            slowest: path.slowest(),
             excess: near.excess(problem),
             is_held: values.get(problem.table.law + STATIC).is_some_and(|excess| *excess > 0.0 && holding.is_some()),
         })
@@ -300,8 +301,18 @@ fn moved(problem: &Problem<'_>, near: &Linearised, values: &[f64], step: &[f64],
 }
 
 impl Path {
+    /// Paths of other records together.
+    pub(crate) fn of_all<'a>(paths: impl Iterator<Item = &'a Self>) -> Self {
+        let mut all = Self { speeds: Vec::new(), lowest: Vec::new() };
+        for path in paths {
+            all.speeds.extend_from_slice(&path.speeds);
+            all.lowest.extend_from_slice(&path.lowest);
+        }
+        all
+    }
+
     /// Path of all records of `problem` by these values.
-    fn of(problem: &Problem<'_>, values: &[f64]) -> Result<Self, EvaluationError> {
+    pub(crate) fn of(problem: &Problem<'_>, values: &[f64]) -> Result<Self, EvaluationError> {
         let (mut speeds, mut lowest) = (Vec::new(), Vec::new());
         for (record, experiment) in problem.experiments().iter().enumerate() {
             let series = experiment.record();
@@ -316,13 +327,23 @@ impl Path {
                 moving.min_by(f64::total_cmp)
             }));
         }
+        Ok(Self { speeds, lowest })
+    }
+
+    /// Speed at or below which half of the half cycles have a sample.
+    pub(super) fn slowest(&self) -> f64 {
+        let mut lowest = self.lowest.clone();
         lowest.sort_by(f64::total_cmp);
-        let slowest = lowest.get(lowest.len() / 2).copied().unwrap_or(0.0);
-        Ok(Self { speeds, slowest })
+        lowest.get(lowest.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Highest speed.
+    pub(crate) fn top(&self) -> f64 {
+        self.speeds.iter().copied().fold(0.0, f64::max)
     }
 
     /// Weight of each level in the mean over the path, for a curve up to `top`.
-    fn weights(&self, top: f64) -> [f64; LEVELS] {
+    pub(super) fn weights(&self, top: f64) -> [f64; LEVELS] {
         /// Steps of the relative speed in which the path is collected.
         const BINS: usize = 4096;
         let mut bins = vec![0.0; BINS + 1];

@@ -1,5 +1,6 @@
 //! Friction over the speed that motions show, with a band and without a law.
 
+pub(crate) mod expected;
 mod fit;
 mod level;
 mod levels;
@@ -14,6 +15,7 @@ use std::time::{Duration, Instant};
 
 use fmm_model::Unit;
 
+pub(crate) use fit::Path;
 pub use level::FrictionLevel;
 
 use crate::error::IdentifyError;
@@ -158,10 +160,7 @@ impl FrictionCurve {
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
         let reference = experiments.first().ok_or(IdentifyError::no_record())?;
-        if experiments.iter().any(|experiment| experiment.lines().is_some()) {
-            let what = "friction over speed without a law is found from motions in time, not from their mobility";
-            return Err(IdentifyError::wrong_record(what.to_owned()));
-        }
+        require_in_time(experiments)?;
         // A measured force tells the scale, and how well it tells it goes with the friction.
         let is_forced = experiments.iter().any(Experiment::is_forced);
         let form = if is_forced { Form::Force } else { Table::form(machine) };
@@ -187,11 +186,16 @@ impl FrictionCurve {
             Scale::Stiffness(_) => clock.order,
             _ => clock.order - 2.0,
         } * clock.uncertainty;
-        let (meaning, factor, mut of_factor) = scale(machine, form, &units, fit.frequency);
         // Friction beside a measured force is as wrong as that is, whatever the response reads.
-        if !is_forced {
-            of_factor.extend([(Source::Gain, gain), (Source::Clock, by_clock)]);
-        }
+        let further = [(Source::Gain, gain), (Source::Clock, by_clock)];
+        Ok(Self::of_fit(fit, form, machine, &units, if is_forced { &[] } else { &further }))
+    }
+
+    /// The curve of a `fit` with forces in this `form`, in the units in which it is stated, with further relative
+    /// standard uncertainties of all levels (1).
+    fn of_fit(fit: CurveFit, form: Form, machine: &Machine, units: &Units, further: &[(Source, f64)]) -> Self {
+        let (meaning, factor, mut of_factor) = scale(machine, form, units, fit.frequency);
+        of_factor.extend(further);
         let unit = match meaning {
             Meaning::Coefficient => Unit::default().to_string(),
             Meaning::Force => units.with_forces().map_or_else(|| "N".to_owned(), |units| units.force.to_string()),
@@ -209,7 +213,7 @@ impl FrictionCurve {
                         rest the record hardly tells one from the other";
             limits.push(what.to_owned());
         }
-        Ok(Self {
+        Self {
             speeds: KNOTS.map(|s| s * fit.top),
             speed_unit: units.velocity().to_string(),
             unit_factor: factor,
@@ -225,7 +229,7 @@ impl FrictionCurve {
             unit,
             is_whole: machine.damping().is_none(),
             limits,
-        })
+        }
     }
 
     /// Speeds of the levels, from rest to the top speed, in the [unit of speeds](Self::speed_unit).
@@ -362,14 +366,9 @@ impl FrictionCurve {
     }
 
     fn level(&self, weights: &[f64; LEVELS]) -> FrictionLevel {
-        let square = self.square_of_factor();
-        let part = |(weight, mean, variance): (f64, f64, f64)| {
-            let mean = mean * self.factor;
-            (weight, mean, variance * self.factor * self.factor + square * mean * mean)
-        };
         let own = self.posterior.marginal(weights);
         let (mean, deviation) = moments(&own);
-        let parts: Vec<_> = own.into_iter().map(part).collect();
+        let parts = factored(own, self.factor, self.square_of_factor());
         let of_factor = self.of_factor.iter().map(|(source, relative)| (*source, (relative * mean).powi(2)));
         let variances = self.sources.parts(weights, deviation * deviation).into_iter().chain(of_factor);
         let contributions = variances.map(|(source, variance)| (source, self.factor * variance.sqrt()));
@@ -380,6 +379,24 @@ impl FrictionCurve {
     fn square_of_factor(&self) -> f64 {
         self.of_factor.iter().map(|(_, relative)| relative * relative).sum()
     }
+}
+
+/// Parts of a mixture times a `factor` of which the relative standard uncertainty has this `square` (1).
+fn factored(parts: Vec<(f64, f64, f64)>, factor: f64, square: f64) -> Vec<(f64, f64, f64)> {
+    let part = |(weight, mean, variance): (f64, f64, f64)| {
+        let mean = mean * factor;
+        (weight, mean, variance * factor * factor + square * mean * mean)
+    };
+    parts.into_iter().map(part).collect()
+}
+
+/// Refuses experiments that are not motions in time.
+fn require_in_time(experiments: &[Experiment]) -> Result<(), IdentifyError> {
+    if experiments.iter().any(|experiment| experiment.lines().is_some()) {
+        let what = "friction over speed without a law is found from motions in time, not from their mobility";
+        return Err(IdentifyError::wrong_record(what.to_owned()));
+    }
+    Ok(())
 }
 
 /// Weights of the level at place `i` alone.

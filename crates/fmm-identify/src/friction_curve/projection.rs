@@ -225,6 +225,18 @@ pub(super) fn friction(table: &Table, values: &[f64], speed: f64, losing: bool) 
     Some(steady + damping * speed + power)
 }
 
+/// Levels up to `top` of that friction, in the mean over growing and falling speeds; that at rest is the one just above.
+pub(super) fn levels(table: &Table, values: &[f64], top: f64) -> Option<[f64; LEVELS]> {
+    /// Lowest speed over the top speed (1). Origin: far below the first knot.
+    const SLOW: f64 = 1e-5;
+    let mut levels = [0.0; LEVELS];
+    for (level, knot) in levels.iter_mut().zip(KNOTS) {
+        let at = |losing| friction(table, values, knot.max(SLOW) * top, losing);
+        *level = 0.5 * (at(false)? + at(true)?);
+    }
+    Some(levels)
+}
+
 /// The least-squares problem of a law on the friction that records show.
 struct Projection<'a> {
     shown: &'a ShownFriction,
@@ -234,20 +246,11 @@ struct Projection<'a> {
 }
 
 impl Projection<'_> {
-    /// b(θ) of damping and law by the values θ, in the mean over growing and falling speeds; that at rest is the one
-    /// just above.
+    /// b(θ) of damping and law by the values θ.
     fn levels(&self, values: &[f64]) -> Option<[f64; LEVELS]> {
-        /// Lowest speed over the top speed (1). Origin: far below the first knot.
-        const SLOW: f64 = 1e-5;
         let mut all = vec![0.0; self.table.oscillator];
         all.extend_from_slice(values);
-        let mut levels = [0.0; LEVELS];
-        for (level, knot) in levels.iter_mut().zip(KNOTS) {
-            let speed = knot.max(SLOW) * self.shown.top;
-            let at = |losing| friction(self.table, &all, speed, losing);
-            *level = 0.5 * (at(false)? + at(true)?);
-        }
-        Some(levels)
+        levels(self.table, &all, self.shown.top)
     }
 
     /// True if a steady motion shows all parameters of the law: at all these values friction is the same for a growing and for a

@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::finding::Source;
 use crate::friction_curve::levels::LEVELS;
-use crate::friction_curve::likelihood::Likelihood;
 use crate::friction_curve::mixture::Posterior;
 
 /// Parts of the covariance C of the levels, relative to the scale of the posterior.
@@ -25,12 +24,18 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// Sources of a `posterior` by a `likelihood`, relative to `scale`.
-    pub(super) fn of(posterior: &Posterior, likelihood: &Likelihood, scale: f64) -> Self {
+    /// Sources of a `posterior` by records of which the levels have this `precision`, and of which each declared value
+    /// changes the information so much, relative to `scale`.
+    pub(super) fn of(
+        posterior: &Posterior,
+        precision: &DMatrix<f64>,
+        by_declared: &[(Source, DVector<f64>)],
+        scale: f64,
+    ) -> Self {
         let covariance = posterior.covariance();
-        let scatter = &covariance * (&likelihood.precision * (scale * scale)) * &covariance;
+        let scatter = &covariance * (precision * (scale * scale)) * &covariance;
         let moved = |(source, by): &(Source, DVector<f64>)| (*source, &covariance * by * scale);
-        Self { scatter, by_declared: likelihood.by_declared.iter().map(moved).collect() }
+        Self { scatter, by_declared: by_declared.iter().map(moved).collect() }
     }
 
     /// Variances by source of what has these `weights` over the levels, and the `variance` in all.

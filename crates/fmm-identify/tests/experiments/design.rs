@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use fmm_friction::CoulombViscous;
+use fmm_friction::{CoulombViscous, Stribeck};
 use fmm_identify::{
-    Aim, Candidate, Experiment, Guess, IdentifyError, Known, Machine, Offset, Plan, PlannedSensor, PlannedTest,
+    Aim, Candidate, Experiment, FrictionCurve, Guess, IdentifyError, Known, Machine, Offset, Plan, PlannedSensor, PlannedTest,
     Preparation, identify,
 };
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
-use fmm_sim::{Engine, Exact, Sampling, Scenario};
+use fmm_sim::{Engine, Exact, Sampling, Scenario, simulate};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -303,4 +303,104 @@ fn what_cannot_be_is_refused_and_named() {
     let unknown = good.best(&Aim::finding("my"), 1).unwrap_err().to_string();
     assert!(unknown.contains("nothing called") || unknown.contains("\"my\""), "{unknown}");
     assert!(Plan::new(berger(), vec![]).is_err());
+}
+/// Friction that falls by a sixth over 0.06 m/s, with a viscous part.
+const FALLING: [f64; 5] = [0.25, 0.3, 0.06, 2.0, 0.05];
+
+/// Friction curve of simulated records of these `releases` (m).
+fn curve_of_records(releases: &[f64], seed: u64) -> FrictionCurve {
+    let law = Stribeck::new(FALLING[0], FALLING[1], FALLING[2], FALLING[3], FALLING[4]).unwrap();
+    let scenario = Scenario::new(Oscillator::new(MASS, STIFFNESS).unwrap(), law, 14.0).unwrap();
+    let (mut random, normal) = (ChaCha8Rng::seed_from_u64(seed), Normal::new(0.0, NOISE).unwrap());
+    let decays = releases.iter().map(|release| {
+        let scenario = scenario.clone().starting_at(*release, 0.0).unwrap();
+        let motion = simulate(&scenario, &Sampling::uniform(1e-3, 2000).unwrap()).unwrap();
+        let values = motion.velocity().values().iter().map(|v| v + normal.sample(&mut random)).collect();
+        let record = Record::sampled(1000.0, values, Quantity::Velocity, "m/s").unwrap();
+        Experiment::ring_down(&record, &Preparation::default()).unwrap()
+    });
+    FrictionCurve::of(&machine(0.0, 0.0), &decays.collect::<Vec<_>>()).unwrap()
+}
+
+fn falling(machine: Machine, releases: &[f64]) -> Plan {
+    let tests = releases.iter().map(|x| release(*x)).collect();
+    Plan::new(guess(machine, "stribeck", &FALLING, &[]), tests).unwrap()
+}
+
+/// Curves of records are as uncertain as was predicted of their tests, of one and of two together: the median of seven
+/// to a quarter, and each value to four u.
+#[test]
+fn curves_are_as_uncertain_as_predicted() {
+    let releases = [0.016, 0.022];
+    let planned = falling(machine(0.0, 0.0), &releases).curve().unwrap();
+    for tests in [&[1][..], &[0, 1]] {
+        let expected = planned.predict(tests).unwrap();
+        let made: Vec<f64> = tests.iter().map(|place| releases[*place]).collect();
+        let curves: Vec<FrictionCurve> = (0..7).map(|seed| curve_of_records(&made, seed)).collect();
+        let close = |a: f64, b: f64| (a / b - 1.0).abs() < 0.01;
+        assert!(close(expected.mean_over_path().value(), curves[0].mean_over_path().value()), "{expected}");
+        assert!(close(planned.top_speed(), *curves[0].speeds().last().unwrap()), "{}", planned.top_speed());
+        for speed in [0.0, 0.002, 0.02, 0.1] {
+            let level = expected.at(speed).unwrap();
+            let mut ratios: Vec<f64> = curves
+                .iter()
+                .map(|curve| {
+                    let found = curve.at(speed).unwrap();
+                    let off = (found.value() - level.value()).abs() / level.uncertainty();
+                    assert!(off < 4.0, "{speed} m/s by {tests:?}: {found} for {level}");
+                    found.uncertainty() / level.uncertainty()
+                })
+                .collect();
+            ratios.sort_by(f64::total_cmp);
+            assert!((0.8..1.25).contains(&ratios[3]), "{speed} m/s by {tests:?}: {ratios:?} of {level}");
+        }
+    }
+}
+
+/// The choice by friction at a speed is that of least u among all sets; repeats of a test lessen it less than noise
+/// does, and errors of load and gain stay.
+#[test]
+fn friction_at_a_speed_is_an_aim() {
+    let plan = falling(machine(0.0, 0.0), &[0.008, 0.012, 0.022]);
+    let planned = plan.curve().unwrap();
+    let u = |tests: &[usize], speed: f64| planned.predict(tests).unwrap().at(speed).unwrap().uncertainty();
+    for speed in [0.0, 0.002, 0.27] {
+        let aim = Aim::FrictionAt(speed);
+        let best = plan.best(&aim, 2).unwrap();
+        let pairs = (0..3).flat_map(|i| (i..3).map(move |j| [i, j]));
+        let least = pairs.min_by(|a, b| u(a, speed).total_cmp(&u(b, speed))).unwrap();
+        assert_eq!(best.measurements(), least, "{speed} m/s");
+        let friction = planned.predict(&least).unwrap().at(speed).unwrap();
+        assert!((best.score().exp() * friction.value() / friction.uncertainty() - 1.0).abs() < 0.01);
+        assert!(u(&[2, 2], speed) < u(&[2], speed) && u(&[2, 2], speed) > 0.6 * u(&[2], speed));
+        let robust = plan.robust_search(&aim, &[plan.guess().values().to_vec()]).unwrap().best(2).unwrap();
+        assert_eq!(robust.measurements(), best.measurements());
+    }
+    // A load that is known to 1 % and a gain that is known to 1 % are errors of all tests.
+    let gauge = sensor().with_gain_uncertainty(0.01).unwrap();
+    let test = PlannedTest::release(0.022, gauge, 1000.0, 2.0).unwrap();
+    let plan = Plan::new(guess(machine(0.0, 0.14), "stribeck", &FALLING, &[]), vec![test]).unwrap();
+    let level = plan.curve().unwrap().predict(&[0; 9]).unwrap().at(0.1).unwrap();
+    let relative = level.uncertainty() / level.value();
+    assert!((relative / (2e-4_f64).sqrt() - 1.0).abs() < 0.02, "{relative}");
+}
+
+#[test]
+fn what_no_friction_curve_shows_is_refused() {
+    let plan = |test: PlannedTest| Plan::new(guess(machine(0.0, 0.0), "stribeck", &FALLING, &[]), vec![test]).unwrap();
+    let refused = |plan: Plan, speed: f64| plan.search(&Aim::FrictionAt(speed)).unwrap_err().to_string();
+    let blow = PlannedTest::impact(100.0, 0.02, sensor(), 1000.0, 2.0).unwrap();
+    let driven = refused(plan(blow), 0.002);
+    assert!(driven.contains("impact of 100 N: ") && driven.contains("leave it out, or aim at a finding"), "{driven}");
+    for other in [
+        release(0.022).under_load(known(7.0, 0.0)).unwrap(),
+        release(0.022).without_contact(),
+        release(0.022).with_added_mass(known(1.0, 0.0)).unwrap(),
+    ] {
+        assert!(refused(plan(other), 0.002).contains("release at 0.022 m: friction over speed"));
+    }
+    let fast = refused(plan(release(0.022)), 0.4);
+    assert!(fast.contains("no more than 0.2783, the highest speed of all tests; ask for less"), "{fast}");
+    assert!(refused(plan(release(0.022)), -1.0).contains("speed of a friction"));
+    assert!(plan(release(0.022)).curve().unwrap().predict(&[1]).is_err());
 }
