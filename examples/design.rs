@@ -13,8 +13,8 @@ use clap::Parser;
 use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::{Berger, CoulombViscous, LawFamily, SlidingLaw, Stribeck};
 use fmm_identify::{
-    Candidate, DesignPrediction, Experiment, FrictionCurve, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest, Preparation,
-    Problem,
+    Candidate, DesignPrediction, Experiment, FrictionCurve, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest,
+    Preparation, Problem,
 };
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};

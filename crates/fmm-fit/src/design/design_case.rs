@@ -104,8 +104,7 @@ impl DesignCase {
             }
         };
         let mut factored = information.to_vec();
-        let scales: Vec<f64> =
-            (0..order).map(|j| (information[j * (order + 1)] + ridge[j]).sqrt().recip()).collect();
+        let scales: Vec<f64> = (0..order).map(|j| (information[j * (order + 1)] + ridge[j]).sqrt().recip()).collect();
         for i in 0..order {
             factored[i * (order + 1)] += ridge[i];
             for j in 0..order {

@@ -217,7 +217,12 @@ impl Guess {
     }
 
     /// A law by the values that a fit has, in its order.
-    pub(super) fn of(machine: Machine, model: Candidate, position: Unit, mut values: Vec<f64>) -> Result<Self, IdentifyError> {
+    pub(super) fn of(
+        machine: Machine,
+        model: Candidate,
+        position: Unit,
+        mut values: Vec<f64>,
+    ) -> Result<Self, IdentifyError> {
         let (_, parameters) = local::layout(&model, &machine, &position, values[0])?;
         for (parameter, value) in parameters.iter().zip(&mut values) {
             let bounds = parameter.bounds();

@@ -198,8 +198,7 @@ impl Plan {
             }
             Aim::FrictionAt(speed) => return PlannedCurve::of(self, values)?.case(*speed),
         };
-        let of_tests =
-            if values == self.guess.values { self.of_tests.clone() } else { self.information_at(values)? };
+        let of_tests = if values == self.guess.values { self.of_tests.clone() } else { self.information_at(values)? };
         let case = DesignCase::new(self.known.clone(), of_tests, combinations);
         case.map_err(|source| local::design_error(self.guess.model.law_name(), source))
     }

@@ -26,8 +26,15 @@ const SHAPES: [fn(f64) -> f64; 4] = [|x| (-x * x).exp(), |x| (-x).exp(), |x| 1.0
 pub(super) struct Prior {
     /// Factors L of the covariances L Lᵀ without a shape, one a τ.
     bases: Vec<DMatrix<f64>>,
-    /// Shapes, each with the squares of its σ_a and their weights.
-    shapes: Vec<(DVector<f64>, Vec<(f64, f64)>)>,
+    shapes: Vec<Shape>,
+}
+
+/// Falling friction at the speeds of the levels.
+#[derive(Debug, Clone)]
+struct Shape {
+    values: DVector<f64>,
+    /// Square of each σ_a and its weight.
+    sizes: Vec<(f64, f64)>,
 }
 
 impl Prior {
@@ -46,12 +53,13 @@ impl Prior {
             factor(&covariance)
         };
         let count = (SHAPES.len() * FALL_SPEEDS.len() * AMPLITUDES.len()) as f64;
-        let mut shapes = vec![(DVector::zeros(LEVELS), vec![(0.0, SHAPELESS)])];
+        let mut shapes = vec![Shape { values: DVector::zeros(LEVELS), sizes: vec![(0.0, SHAPELESS)] }];
         for shape in SHAPES {
             for fall in FALL_SPEEDS {
                 let values = DVector::from_iterator(LEVELS, KNOTS.map(|s| shape(s / fall)));
                 let weight = (1.0 - SHAPELESS) / count;
-                shapes.push((values, AMPLITUDES.map(|deviation| (deviation * deviation, weight)).to_vec()));
+                let sizes = AMPLITUDES.map(|deviation| (deviation * deviation, weight)).to_vec();
+                shapes.push(Shape { values, sizes });
             }
         }
         Self { bases: REMAINDERS.map(base).to_vec(), shapes }
@@ -65,7 +73,7 @@ impl Prior {
     ///            b = m + a g,   a ~ N(σ_a² t/d, σ_a²/d),   ln Z + ½ σ_a² t²/d − ½ ln d
     /// ```
     pub(super) fn posterior(&self, precision: &DMatrix<f64>, information: &DVector<f64>) -> Posterior {
-        let by_shapes: Vec<DVector<f64>> = self.shapes.iter().map(|(shape, _)| precision * shape).collect();
+        let by_shapes: Vec<DVector<f64>> = self.shapes.iter().map(|shape| precision * &shape.values).collect();
         let (mut bases, mut parts, mut evidences) = (Vec::with_capacity(self.bases.len()), Vec::new(), Vec::new());
         for root in &self.bases {
             let inner = DMatrix::identity(LEVELS, LEVELS) + root.transpose() * precision * root;
@@ -77,9 +85,9 @@ impl Prior {
             let mean = &spread * (&whitened * information);
             let evidence = 0.5 * information.dot(&mean) - 0.5 * log_determinant;
             let left = information - precision * &mean;
-            for ((shape, sizes), by_shape) in self.shapes.iter().zip(&by_shapes) {
-                let direction = shape - &spread * (&whitened * by_shape);
-                let (curvature, along) = (by_shape.dot(&direction).max(0.0), shape.dot(&left));
+            for (Shape { values, sizes }, by_shape) in self.shapes.iter().zip(&by_shapes) {
+                let direction = values - &spread * (&whitened * by_shape);
+                let (curvature, along) = (by_shape.dot(&direction).max(0.0), values.dot(&left));
                 for (square, weight) in sizes {
                     let divisor = 1.0 + square * curvature;
                     let (amplitude, direction) = (square * along / divisor, direction.clone());

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use fmm_friction::{CoulombViscous, Stribeck};
 use fmm_identify::{
-    Aim, Candidate, Experiment, FrictionCurve, Guess, IdentifyError, Known, Machine, Offset, Plan, PlannedSensor, PlannedTest,
-    Preparation, identify,
+    Aim, Candidate, Experiment, FrictionCurve, Guess, IdentifyError, Known, Machine, Offset, Plan, PlannedSensor,
+    PlannedTest, Preparation, identify,
 };
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
