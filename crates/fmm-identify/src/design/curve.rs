@@ -21,7 +21,7 @@ use crate::friction_curve::{FrictionCurve, Path};
 /// the curve of records whose noise is zero in the mean.
 ///
 /// ```
-/// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
+/// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedCurve, PlannedSensor, PlannedTest};
 /// use fmm_record::Quantity;
 ///
 /// let machine = Machine::of_mass(Known::exact(10.391)?)?.with_normal_load(Known::exact(14.0)?)?;
@@ -30,7 +30,7 @@ use crate::friction_curve::{FrictionCurve, Path};
 /// let tests = [0.008, 0.022].map(|x| PlannedTest::release(x, sensor, 1000.0, 2.0)).into_iter();
 /// let plan = Plan::new(guess, tests.collect::<Result<_, _>>()?)?;
 ///
-/// let curve = plan.curve()?;
+/// let curve: PlannedCurve = plan.curve()?;
 /// let u = |tests: &[usize]| Ok::<_, fmm_identify::IdentifyError>(curve.predict(tests)?.at(0.002).unwrap().uncertainty());
 /// assert!(u(&[0, 1])? < u(&[0])?.min(u(&[1])?));
 /// assert_eq!(plan.best(&Aim::FrictionAt(0.002), 1)?.measurements().len(), 1);
