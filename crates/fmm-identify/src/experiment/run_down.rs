@@ -123,16 +123,29 @@ impl Experiment {
     }
 
     /// The part of a free motion before its rest, of a run-down with the offset that the rest shows; `None` without a
-    /// rest, and for a driven motion.
+    /// rest that is seen, and for a driven motion.
     pub(crate) fn before_rest(&self) -> Option<Self> {
-        let of_impact = || self.impact.as_ref().and_then(|impact| impact.rest);
-        let Some(run_down) = &self.run_down else { return self.up_to(self.summary.rest_from.or_else(of_impact)?) };
+        let Some(run_down) = &self.run_down else { return self.up_to(self.seen_rest()?) };
         let (time, level) = run_down.rest?;
         let mut moving = self.up_to(time)?;
         if self.record.quantity() == Quantity::Velocity && moving.summary.held_offset.is_none() {
             moving.summary.held_offset = Some(level);
         }
         Some(moving)
+    }
+
+    /// Time at which a ring-down or the motion after an impact comes to rest (s); `None` where more of its swings lie
+    /// below the noise than one.
+    fn seen_rest(&self) -> Option<f64> {
+        /// Speed or deflection below which a motion is lost in the noise, in standard deviations. Origin: a rest is a
+        /// range of eight.
+        const LOST: f64 = 4.0;
+        if let Some(impact) = &self.impact {
+            return impact.rest;
+        }
+        let (first, last) = self.summary.amplitudes;
+        let losses = self.summary.half_swings.checked_sub(1)?;
+        self.summary.rest_from.filter(|_| LOST * self.summary.noise * losses as f64 <= (first - last).abs())
     }
 
     /// True if it is a run-down.

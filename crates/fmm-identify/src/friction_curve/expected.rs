@@ -12,8 +12,8 @@ use crate::friction_curve::mixture::{Posterior, Prior};
 use crate::friction_curve::projection::levels;
 use crate::friction_curve::sources::Sources;
 use crate::friction_curve::{FrictionCurve, factored, scale};
-use crate::linear_algebra::inverse;
 use crate::law::naming::Form;
+use crate::linear_algebra::inverse;
 use crate::machine::{Machine, Terms};
 use crate::quantities::table::Table;
 
