@@ -73,7 +73,7 @@ fn a_force_tells_the_scale_of_the_curve() {
     let known = FrictionCurve::of(&mass(0.05 * MASS), &experiments).unwrap();
     require_truth(&known, 1.0);
     // The force tells the mass far better than that is declared.
-    let [free, known] = [&free, &known].map(|curve| curve.mean_over_path());
+    let [free, known] = [&free, &known].map(FrictionCurve::mean_over_path);
     assert!((known.value() - free.value()).abs() < 0.05 * free.uncertainty(), "{known} beside {free}");
     assert!((known.uncertainty() / free.uncertainty() - 1.0).abs() < 0.02, "{known} beside {free}");
     let loaded = Machine::unknown().with_normal_load(Known::new(20.0, 0.02).unwrap()).unwrap();
@@ -108,7 +108,7 @@ fn an_impact_and_a_ring_down_share_the_curve() {
     let trial = ImpactTrial::prepare(&force, &velocity(&struck, 6.0, 3)).unwrap();
     let machine = Machine::unknown();
     let impact = Experiment::impact(&trial).unwrap();
-    require_truth(&FrictionCurve::of(&machine, &[impact.clone()]).unwrap(), 1.0);
+    require_truth(&FrictionCurve::of(&machine, std::slice::from_ref(&impact)).unwrap(), 1.0);
     let both = FrictionCurve::of(&machine, &[impact, ring_down(1.0, 4)]).unwrap();
     assert_eq!(both.unit(), "N");
     require_truth(&both, 1.0);
