@@ -1,4 +1,4 @@
-//! Parts of an experiment: up to a time, between its reversals, with few of its samples, or by means of samples.
+//! Parts of an experiment: up to a time or its rest, between its reversals, with few samples, or by means of samples.
 
 use std::borrow::Cow;
 use std::f64::consts::PI;
@@ -65,6 +65,32 @@ impl Experiment {
         // Three periods tell a frequency.
         let end = end.max(self.record.start() + 3.0 / self.guess.frequency());
         self.up_to(end).unwrap_or_else(|| self.clone())
+    }
+
+    /// The part of a free motion before its rest, of a run-down with the offset that the rest shows; `None` without a
+    /// rest that is seen, and for a driven motion.
+    pub(crate) fn before_rest(&self) -> Option<Self> {
+        let Some(run_down) = &self.run_down else { return self.up_to(self.seen_rest()?) };
+        let (time, level) = run_down.rest?;
+        let mut moving = self.up_to(time)?;
+        if self.record.quantity() == Quantity::Velocity && moving.summary.held_offset.is_none() {
+            moving.summary.held_offset = Some(level);
+        }
+        Some(moving)
+    }
+
+    /// Time at which a ring-down or the motion after an impact comes to rest (s); `None` where more of its swings lie
+    /// below the noise than one.
+    fn seen_rest(&self) -> Option<f64> {
+        /// Speed or deflection below which a motion is lost in the noise, in standard deviations. Origin: a rest is a
+        /// range of eight.
+        const LOST: f64 = 4.0;
+        if let Some(impact) = &self.impact {
+            return impact.rest;
+        }
+        let (first, last) = self.summary.amplitudes;
+        let losses = self.summary.half_swings.checked_sub(1)?;
+        self.summary.rest_from.filter(|_| LOST * self.summary.noise * losses as f64 <= (first - last).abs())
     }
 
     /// The part up to `end` (s); `None` if that leaves nothing out or too little.
@@ -212,5 +238,17 @@ mod tests {
         let (few, many) = (longest(5e-5).unwrap(), longest(1e-3).unwrap());
         // Δa h/8 = 0.3 σ/√n with Δa = 0.6 m/s² gives n = 4 and less than 30, and a thousand in a period are 20.
         assert!((3.0..5.0).contains(&few) && (18.5..20.5).contains(&many), "{few}, {many}");
+    }
+
+    /// A motion is taken up to its rest, unless noise hides more than its last swing: 0.024 m/s are lost in each half
+    /// cycle.
+    #[test]
+    fn a_rest_is_left_out_where_it_is_seen() {
+        let rest = |noise: f64| ring_down(0.3, noise).before_rest().map(|moving| moving.record().end());
+        let seen = rest(1e-3).unwrap();
+        let values = motion(0.3, &Sampling::uniform(INTERVAL, 100_000).unwrap());
+        let stop = INTERVAL * values.iter().rposition(|speed| *speed != 0.0).unwrap() as f64;
+        assert!(seen <= stop + 0.01 && seen > stop - 0.25, "{seen} beside {stop}");
+        assert_eq!(rest(0.02), None);
     }
 }

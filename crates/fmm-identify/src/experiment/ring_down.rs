@@ -284,12 +284,14 @@ fn between(range: Range<usize>, holes: &[Range<usize>]) -> Vec<Range<usize>> {
 /// Time at which `record` comes to rest (s): from there on its values stay within their noise and a `resolution` for at least
 /// half a period of the motion; `None` if they do not.
 fn rest_from(examination: &Examination, resolution: f64, frequency: f64) -> Option<f64> {
-    /// The range of a thousand normal values, in standard deviations, with some to spare.
-    const RANGE: f64 = 8.0;
+    /// Range of a thousand normal values, and what it is above 2 √(2 ln n) for n of them, in standard deviations, with
+    /// some to spare.
+    const RANGE: (f64, f64) = (8.0, 0.6);
     let record = examination.record();
     let values = record.values();
     let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-    let band = RANGE * examination.noise() + 1.5 * resolution + 1e-9 * largest;
+    let range = RANGE.0.max(2.0 * (2.0 * (values.len() as f64).ln()).sqrt() + RANGE.1);
+    let band = range * examination.noise() + 1.5 * resolution + 1e-9 * largest;
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let moves = |value: &f64| {
         (low, high) = (low.min(*value), high.max(*value));

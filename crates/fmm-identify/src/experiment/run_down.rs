@@ -122,32 +122,6 @@ impl Experiment {
         Ok(Self { run_down: Some(guess), ..Self::bare(record.clone(), kept, first_guess, summary) })
     }
 
-    /// The part of a free motion before its rest, of a run-down with the offset that the rest shows; `None` without a
-    /// rest that is seen, and for a driven motion.
-    pub(crate) fn before_rest(&self) -> Option<Self> {
-        let Some(run_down) = &self.run_down else { return self.up_to(self.seen_rest()?) };
-        let (time, level) = run_down.rest?;
-        let mut moving = self.up_to(time)?;
-        if self.record.quantity() == Quantity::Velocity && moving.summary.held_offset.is_none() {
-            moving.summary.held_offset = Some(level);
-        }
-        Some(moving)
-    }
-
-    /// Time at which a ring-down or the motion after an impact comes to rest (s); `None` where more of its swings lie
-    /// below the noise than one.
-    fn seen_rest(&self) -> Option<f64> {
-        /// Speed or deflection below which a motion is lost in the noise, in standard deviations. Origin: a rest is a
-        /// range of eight.
-        const LOST: f64 = 4.0;
-        if let Some(impact) = &self.impact {
-            return impact.rest;
-        }
-        let (first, last) = self.summary.amplitudes;
-        let losses = self.summary.half_swings.checked_sub(1)?;
-        self.summary.rest_from.filter(|_| LOST * self.summary.noise * losses as f64 <= (first - last).abs())
-    }
-
     /// True if it is a run-down.
     pub(crate) fn is_run_down(&self) -> bool {
         self.run_down.is_some()
@@ -213,7 +187,7 @@ pub(crate) struct RunDownGuess {
     /// Mean deceleration.
     slowed: f64,
     /// Time (s) from which on the machine rests, and the mean velocity there.
-    rest: Option<(f64, f64)>,
+    pub(super) rest: Option<(f64, f64)>,
     /// Path of the run, and its largest speed.
     pub(crate) path: f64,
     pub(crate) speed: f64,
