@@ -9,8 +9,9 @@ use crate::design::local::{Local, design_error};
 use crate::design::planned_test::Load;
 use crate::design::{Guess, Plan, PlannedTest};
 use crate::error::IdentifyError;
+use crate::friction_curve::FrictionCurve;
 use crate::friction_curve::expected::Expected;
-use crate::friction_curve::{FrictionCurve, Path};
+use crate::friction_curve::path::Path;
 
 /// Friction over the speed as planned tests would show it, without a law: the [`FrictionCurve`] of their records, before
 /// they are made.

@@ -13,7 +13,7 @@ use crate::design::planned_test::{Load, Motion};
 use crate::design::{Guess, PlannedTest};
 use crate::error::IdentifyError;
 use crate::experiment::{Drive, Experiment};
-use crate::friction_curve::Path;
+use crate::friction_curve::path::Path;
 use crate::law::DIRECTIONS;
 use crate::law::dimension::is_force;
 use crate::machine::Scale;

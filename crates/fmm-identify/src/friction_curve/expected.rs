@@ -5,10 +5,11 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::friction_curve::fit::{CurveFit, Path};
+use crate::friction_curve::fit::CurveFit;
 use crate::friction_curve::level::FrictionLevel;
 use crate::friction_curve::levels::{LEVELS, Levels, TOP_SPEED, weights};
 use crate::friction_curve::mixture::{Posterior, Prior};
+use crate::friction_curve::path::Path;
 use crate::friction_curve::projection::levels;
 use crate::friction_curve::sources::Sources;
 use crate::friction_curve::{FrictionCurve, factored, scale};

@@ -6,6 +6,7 @@ mod level;
 mod levels;
 mod likelihood;
 mod mixture;
+pub(crate) mod path;
 pub(crate) mod projection;
 mod report;
 mod rules;
@@ -15,7 +16,6 @@ use std::time::{Duration, Instant};
 
 use fmm_model::Unit;
 
-pub(crate) use fit::Path;
 pub use level::FrictionLevel;
 
 use crate::error::IdentifyError;
@@ -41,7 +41,7 @@ use crate::quantities::table::{Table, mass_of_stiffness};
 /// ```
 ///
 /// Ring-downs, run-downs, impacts and driven motions show it, one or several under one load. A contact that holds more
-/// than it slides with has a static level beside the curve where a drive goes on and shows it; of a free motion the part
+/// than it slides with has a static level beside the curve where a drive goes on and shows it. Of a free motion the part
 /// before its rest is taken, which no static level changes.
 ///
 /// The curve is fifteen levels at fixed speeds with cubics between them, fitted through every reversal and stop. Before
