@@ -19,7 +19,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// `‖a‖²`.
 pub(crate) fn sum_of_squares(a: &[f64]) -> f64 {
-    sum::<Square>(a, a)
+    dot(a, a)
 }
 
 /// `½ (‖a‖² − ‖b‖²)` without the cancellation of two large sums.
@@ -55,21 +55,6 @@ impl Term for Product {
     #[inline(always)]
     fn of(a: f64, b: f64) -> f64 {
         a * b
-    }
-}
-
-/// Of the first column alone, which is then read alone.
-struct Square;
-
-#[expect(clippy::inline_always, reason = "it must be compiled where it is called, for the vectors there are")]
-impl Term for Square {
-    #[inline(always)]
-    fn add<S: Simd>(simd: S, a: S::f64s, _: S::f64s, sum: S::f64s) -> S::f64s {
-        simd.mul_add_e_f64s(a, a, sum)
-    }
-    #[inline(always)]
-    fn of(a: f64, _: f64) -> f64 {
-        a * a
     }
 }
 
