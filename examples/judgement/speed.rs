@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use fmm_fit::{Options, Progress, Residuals as _, solve};
+use fmm_fit::{Minimizer, Options, Residuals as _, solve};
 use fmm_friction::{BoucWen, Dahl, LawFamily, LuGre, MakkarDixon, Role, ShiftedMakkarDixon, Stribeck};
 use fmm_identify::{Candidate, Experiment, Inquiry, Machine, Preparation, Problem, Terms};
 use fmm_model::Oscillator;
@@ -134,7 +134,7 @@ fn fit<F: LawFamily>(terms: &Terms, decays: &[Experiment], truth: Option<&[f64]>
     let machine = Machine::per_unit_mass();
     let (begun, mut steps) = (Instant::now(), 0);
     let candidate = Candidate::of::<F>().with(terms.clone());
-    let count = |_: &str, _: &Progress<'_>| {
+    let count = |_: &str, _: &Minimizer| {
         steps += 1;
         ControlFlow::Continue(())
     };

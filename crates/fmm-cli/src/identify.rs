@@ -18,7 +18,7 @@ use crate::posterior::Posterior;
 use crate::refusal::{Kind, placed};
 use crate::report::{self, Curve, Found, Pictures};
 use clap::Args;
-use fmm_fit::Progress;
+use fmm_fit::Minimizer;
 use fmm_identify::{Candidate, Comparison, Drive, Experiment, ImpactTrial, Preparation};
 use fmm_record::{Column, Quantity, Record};
 use serde::Serialize;
@@ -125,7 +125,7 @@ fn fitted(
 ) -> Result<Comparison, Box<dyn Error>> {
     let samples = decays.iter().map(|decay| decay.summary().samples).sum::<usize>() as f64;
     host.while_working(|tell| {
-        let show = |law: &str, progress: &Progress<'_>| {
+        let show = |law: &str, progress: &Minimizer| {
             let rms = (progress.sum_of_squares() / samples).sqrt();
             tell(format!("{law}: step {}, rms residual {rms:.4e}", progress.iterations()))
         };

@@ -158,7 +158,7 @@ pub use fitting::argmin::BoundedLevenbergMarquardt;
 pub use fitting::curve::{ClosureProblem, curve, curve_fit};
 pub use fitting::joint::Joint;
 pub use fitting::multi_start::MultiStart;
-pub use fitting::solve::{Progress, solve, solve_observed};
+pub use fitting::solve::{solve, solve_observed};
 pub use fmm_model::{Bounds, Dual, Parameter, Scalar};
 #[cfg(feature = "sampler")]
 pub use posterior::calibration::Calibration;

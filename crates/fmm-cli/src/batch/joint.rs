@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 
-use fmm_fit::Progress;
+use fmm_fit::Minimizer;
 use fmm_identify::Experiment;
 use serde::Serialize;
 
@@ -37,7 +37,7 @@ impl Together {
         rows: &[Row],
         with_doubtful: bool,
         host: &Host<'_>,
-        show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+        show: impl FnMut(&str, &Minimizer) -> ControlFlow<()> + Send,
     ) -> Result<Self, Box<dyn Error>> {
         let counted = || (0..rows.len()).filter(|index| rows[*index].counts(with_doubtful));
         let law = one_law(counted().filter_map(|index| rows[index].found()))?;

@@ -22,7 +22,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fmm_fit::Progress;
+use fmm_fit::Minimizer;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -136,7 +136,7 @@ fn joint(
 ) -> Result<Outcome<Together>, Box<dyn Error>> {
     let joint = host.while_working(|tell| {
         let show =
-            |law: &str, progress: &Progress<'_>| tell(format!("joint fit by {law}: step {}", progress.iterations()));
+            |law: &str, progress: &Minimizer| tell(format!("joint fit by {law}: step {}", progress.iterations()));
         Together::of(campaign, rows, asked.count_doubtful, host, show)
     })?;
     Ok(joint.into())

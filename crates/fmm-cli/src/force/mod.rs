@@ -23,7 +23,7 @@ use crate::refusal::Kind;
 use clap::Args;
 use columns::Columns;
 pub(crate) use document::Content;
-use fmm_fit::Progress;
+use fmm_fit::Minimizer;
 use fmm_identify::{
     Candidate, Comparison, ForceLoop, ForceRecord, Identification, IdentifyError, Inquiry, Machine, Onset, SpeedBin,
     Validation, Warning,
@@ -233,7 +233,7 @@ fn compared(
     let machine = Machine::per_unit_mass();
     let limit = arguments.time_limit.map(limit).transpose()?;
     let found = host.while_working(|tell| {
-        let show = |law: &str, progress: &Progress<'_>| tell(format!("{law}: step {}", progress.iterations()));
+        let show = |law: &str, progress: &Minimizer| tell(format!("{law}: step {}", progress.iterations()));
         let inquiry = Inquiry::of(&machine, records).validated_by(others).observed_by(show);
         match limit {
             Some(limit) => inquiry.within(limit).among(models),

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use fmm_fit::Progress;
+use fmm_fit::Minimizer;
 use fmm_identify::{
     Candidate, Comparison, Experiment, FrictionCurve, Identification, Inquiry, Known, Machine, Preparation, Sensor,
     Source,
@@ -318,7 +318,7 @@ impl Question {
         &self,
         decays: &[Experiment],
         candidates: &[Candidate],
-        show: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send,
+        show: impl FnMut(&str, &Minimizer) -> ControlFlow<()> + Send,
     ) -> Result<Comparison, Box<dyn Error>> {
         let is_force =
             |decay: &Experiment| decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force);

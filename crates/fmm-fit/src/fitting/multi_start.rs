@@ -11,7 +11,6 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use crate::error::FitError;
-use crate::fitting::solve::Progress;
 use crate::problem::residuals::Residuals;
 use crate::result::fit::Fit;
 use crate::solver::minimizer::Minimizer;
@@ -120,7 +119,7 @@ impl MultiStart {
         self.solve_observed(problem, |_| ControlFlow::Continue(()))
     }
 
-    /// [`solve`](Self::solve) with an `observer` that gets the progress after every trial step of every fit, and may
+    /// [`solve`](Self::solve) with an `observer` that gets the solver of each fit after every trial step, and may
     /// end them all.
     ///
     /// With the feature `rayon` the steps come in any order. An observer that itself waits for work of the pool may
@@ -131,7 +130,7 @@ impl MultiStart {
     pub fn solve_observed<P: Residuals + Sync + ?Sized>(
         &self,
         problem: &P,
-        observer: impl FnMut(&Progress<'_>) -> ControlFlow<()> + Send,
+        observer: impl FnMut(&Minimizer) -> ControlFlow<()> + Send,
     ) -> Result<Fit, FitError> {
         let watch = Watch(Mutex::new(Some(observer)));
         let begin = |start: &Vec<f64>| {
@@ -173,11 +172,11 @@ impl MultiStart {
 /// The observer of all fits; none once it has ended them.
 struct Watch<F>(Mutex<Option<F>>);
 
-impl<F: FnMut(&Progress<'_>) -> ControlFlow<()>> Watch<F> {
+impl<F: FnMut(&Minimizer) -> ControlFlow<()>> Watch<F> {
     /// Tells the observer of a step, unless it has ended all fits already.
-    fn is_told_to_end(&self, progress: Progress<'_>) -> bool {
+    fn is_told_to_end(&self, fit: &Minimizer) -> bool {
         let mut observer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if observer.as_mut().is_some_and(|observer| observer(&progress).is_break()) {
+        if observer.as_mut().is_some_and(|observer| observer(fit).is_break()) {
             *observer = None;
         }
         observer.is_none()
@@ -197,7 +196,7 @@ fn each<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) ->
 }
 
 /// Takes at most `steps` trial steps, unless the observer ends all fits.
-fn go<P: Residuals + ?Sized, F: FnMut(&Progress<'_>) -> ControlFlow<()>>(
+fn go<P: Residuals + ?Sized, F: FnMut(&Minimizer) -> ControlFlow<()>>(
     fit: &mut Minimizer,
     problem: &P,
     steps: usize,
@@ -208,7 +207,7 @@ fn go<P: Residuals + ?Sized, F: FnMut(&Progress<'_>) -> ControlFlow<()>>(
             break;
         }
         let outcome = fit.iterate(problem);
-        if watch.is_told_to_end(Progress::of(fit)) && outcome.is_none() {
+        if watch.is_told_to_end(fit) && outcome.is_none() {
             fit.cancel(problem);
         }
     }

@@ -8,7 +8,6 @@ use crate::result::fit::Fit;
 use crate::solver::jacobian_check::check_jacobian;
 use crate::solver::minimizer::Minimizer;
 use crate::solver::options::Options;
-use crate::solver::outcome::Outcome;
 
 /// Fits `problem` from `start`, one value per parameter within its bounds.
 ///
@@ -46,7 +45,7 @@ pub fn solve<P: Residuals + ?Sized>(problem: &P, start: &[f64], options: &Option
     solve_observed(problem, start, options, |_| ControlFlow::Continue(()))
 }
 
-/// [`solve`] with an `observer` that gets the progress after every trial step; `Break` ends the fit as
+/// [`solve`] with an `observer` that gets the solver after every trial step; `Break` ends the fit as
 /// [`Outcome::Cancelled`] with the best values so far.
 ///
 /// # Errors
@@ -55,7 +54,7 @@ pub fn solve_observed<P: Residuals + ?Sized>(
     problem: &P,
     start: &[f64],
     options: &Options,
-    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(&Minimizer) -> ControlFlow<()>,
 ) -> Result<Fit, FitError> {
     let mut minimizer = Minimizer::new(options.clone());
     // Before the fit has its own buffers.
@@ -65,54 +64,9 @@ pub fn solve_observed<P: Residuals + ?Sized>(
     let mut outcome = minimizer.outcome();
     while outcome.is_none() {
         outcome = minimizer.iterate(problem);
-        if observer(&Progress::of(&minimizer)).is_break() && outcome.is_none() {
+        if observer(&minimizer).is_break() && outcome.is_none() {
             outcome = Some(minimizer.cancel(problem));
         }
     }
     Ok(minimizer.into_fit())
-}
-
-/// Progress of a fit.
-#[derive(Debug, Clone, Copy)]
-pub struct Progress<'a> {
-    minimizer: &'a Minimizer,
-}
-
-impl<'a> Progress<'a> {
-    /// The progress of `minimizer`.
-    pub(crate) fn of(minimizer: &'a Minimizer) -> Self {
-        Self { minimizer }
-    }
-}
-
-impl Progress<'_> {
-    /// Trial steps taken, accepted or not.
-    pub fn iterations(&self) -> usize {
-        self.minimizer.iterations()
-    }
-
-    /// Evaluations of the residuals, those for differences included.
-    pub fn residual_evaluations(&self) -> usize {
-        self.minimizer.residual_evaluations()
-    }
-
-    /// The present values, one per parameter; after a stall they return to the start.
-    pub fn values(&self) -> &[f64] {
-        self.minimizer.values()
-    }
-
-    /// Σᵢ rᵢ² at the present values.
-    pub fn sum_of_squares(&self) -> f64 {
-        self.minimizer.sum_of_squares()
-    }
-
-    /// The trusted length of a step, in the unit of the residuals.
-    pub fn radius(&self) -> f64 {
-        self.minimizer.radius()
-    }
-
-    /// The end of the fit, if this is its last step.
-    pub fn outcome(&self) -> Option<Outcome> {
-        self.minimizer.outcome()
-    }
 }

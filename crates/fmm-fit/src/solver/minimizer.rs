@@ -115,7 +115,8 @@ impl Minimizer {
         }
     }
 
-    /// The best values so far, one per parameter.
+    /// The present values, one per parameter. A search that stalls begins again at the start; those at the end are the
+    /// best.
     pub fn values(&self) -> &[f64] {
         &self.current.values
     }
@@ -143,6 +144,11 @@ impl Minimizer {
     /// Evaluations of the Jacobian by the problem itself.
     pub fn jacobian_evaluations(&self) -> usize {
         self.evaluator.jacobian_evaluations
+    }
+
+    /// The trusted length of a step, in the unit of the residuals.
+    pub fn radius(&self) -> f64 {
+        self.region.radius
     }
 
     /// The end of the fit; `None` before.
@@ -177,10 +183,6 @@ impl Minimizer {
 
     pub(crate) fn non_finite(&self) -> Option<&NonFinite> {
         self.evaluator.non_finite.as_ref()
-    }
-
-    pub(crate) fn radius(&self) -> f64 {
-        self.region.radius
     }
 
     /// Checks the start and evaluates it.

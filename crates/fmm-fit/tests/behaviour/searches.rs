@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fmm_fit::{
-    EvaluationError, FitError, MultiStart, Options, Outcome, ProfileEnd, ProfileInterval, Progress, ResidualVariance,
+    EvaluationError, FitError, Minimizer, MultiStart, Options, Outcome, ProfileEnd, ProfileInterval, ResidualVariance,
     Residuals, solve, solve_observed,
 };
 use fmm_model::{Bounds, Parameter};
@@ -323,7 +323,7 @@ fn of_several_starts_the_best_is_finished() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
     let starts: Vec<Vec<f64>> = (0..8).map(|i| vec![3.0 * f64::from(i) - 4.0, 1.5 * f64::from(i) - 5.0]).collect();
     let mut steps = 0;
-    let mut count = |_: &Progress<'_>| {
+    let mut count = |_: &Minimizer| {
         steps += 1;
         ControlFlow::Continue(())
     };
@@ -331,7 +331,7 @@ fn of_several_starts_the_best_is_finished() {
     assert!((best.values()[0] - 5.0).abs() < 1e-9 && (best.values()[1] - 4.0).abs() < 1e-9, "{:?}", best.values());
     let mut all = 0;
     for start in &starts {
-        let count = |_: &Progress<'_>| {
+        let count = |_: &Minimizer| {
             all += 1;
             ControlFlow::Continue(())
         };
@@ -360,7 +360,7 @@ fn fits_that_meet_go_on_as_one() {
     });
     let steps_from = |starts: &[Vec<f64>]| {
         let mut steps = 0;
-        let count = |_: &Progress<'_>| {
+        let count = |_: &Minimizer| {
             steps += 1;
             ControlFlow::Continue(())
         };
@@ -390,7 +390,7 @@ fn an_observer_ends_all_fits() {
     let problem = problem(&[FREE, FREE], 2, freudenstein_roth);
     let starts = [vec![0.5, -2.0], vec![6.0, 5.0], vec![20.0, 20.0]];
     let mut steps = 0;
-    let few = |_: &Progress<'_>| {
+    let few = |_: &Minimizer| {
         steps += 1;
         if steps < 8 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use fmm_fit::{Fit, FitError, MultiStart, Options, Outcome, Progress, Residuals, solve_observed};
+use fmm_fit::{Fit, FitError, Minimizer, MultiStart, Options, Outcome, Residuals, solve_observed};
 use fmm_friction::CoulombViscous;
 use fmm_model::Restoring;
 
@@ -18,7 +18,7 @@ use crate::residuals::structure::ResidualStructure;
 use crate::threads::on_all_threads;
 
 /// Observer of the trial steps of a fit; a break ends it.
-pub(crate) type Observer<'o> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + Send + 'o;
+pub(crate) type Observer<'o> = dyn FnMut(&Minimizer) -> ControlFlow<()> + Send + 'o;
 
 /// Starts of the fit of a problem.
 pub(crate) type Starts<'a> = dyn Fn(&Problem<'_>) -> Vec<Vec<f64>> + Sync + 'a;
@@ -323,7 +323,7 @@ fn best_fit_of_all(
     observer: &mut Observer<'_>,
 ) -> Result<Fit, IdentifyError> {
     let observer = Mutex::new(observer);
-    let observe = |progress: &Progress<'_>| match observer.lock() {
+    let observe = |progress: &Minimizer| match observer.lock() {
         Ok(mut observer) => observer(progress),
         Err(_) => ControlFlow::Break(()),
     };

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use fmm_fit::{EvaluationError, Options, Progress, Residuals, autocorrelation_time};
+use fmm_fit::{EvaluationError, Minimizer, Options, Residuals, autocorrelation_time};
 use fmm_friction::CoulombViscous;
 use nalgebra::DVector;
 
@@ -76,7 +76,7 @@ impl<'a> Levelled<'a> {
         let simple = by(Candidate::of::<CoulombViscous>().with(beside.clone()))?;
         let options = Options::default();
         let mut observer =
-            |_: &Progress<'_>| if is_past(end) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+            |_: &Minimizer| if is_past(end) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         let line = fit_begun(&simple, Begin::Anywhere, &options, &mut observer)?;
         let failure = |error: EvaluationError| IdentifyError::simulation("friction_curve", error);
         let path = Path::of(&simple, line.values()).map_err(failure)?;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use fmm_fit::{Options, Progress};
+use fmm_fit::{Minimizer, Options};
 use fmm_friction::{FamilyVisitor, LawFamily};
 
 use crate::candidate::Candidate;
@@ -26,7 +26,7 @@ use crate::threads::{is_past, on_all_threads};
 use crate::warning::Warning;
 
 /// Observer of the trial steps of fits by laws of these names; a break ends a fit.
-type Observer<'a> = dyn FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send + 'a;
+type Observer<'a> = dyn FnMut(&str, &Minimizer) -> ControlFlow<()> + Send + 'a;
 
 /// Identifies the parameters of law family `F` from vibrations of one machine, or from forces along motions, with the
 /// default options of an [`Inquiry`].
@@ -189,7 +189,7 @@ impl<'a> Inquiry<'a> {
     /// The same with an observer that gets the name of the law with every trial step; a break ends the fit. Steps of
     /// fits on several threads come in any order, and the observer must not wait for work of the pool.
     #[must_use]
-    pub fn observed_by(self, observer: impl FnMut(&str, &Progress<'_>) -> ControlFlow<()> + Send + 'a) -> Self {
+    pub fn observed_by(self, observer: impl FnMut(&str, &Minimizer) -> ControlFlow<()> + Send + 'a) -> Self {
         Self { observer: Mutex::new(Box::new(observer)), ..self }
     }
 
