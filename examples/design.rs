@@ -12,10 +12,8 @@ use std::time::Instant;
 use clap::Parser;
 use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::{Berger, CoulombViscous, LawFamily, SlidingLaw, Stribeck};
-use fmm_identify::{
-    Candidate, DesignPrediction, Experiment, FrictionCurve, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest,
-    Preparation, Problem,
-};
+use fmm_identify::design::{DesignPrediction, Guess, Plan, PlannedSensor, PlannedTest};
+use fmm_identify::{Candidate, Experiment, FrictionCurve, Known, Machine, Preparation, Problem};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Sampling, Scenario, Trajectory, simulate_into};

@@ -6,7 +6,8 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use fmm_fit::{Calibration, Options, Posterior, Prior, ResidualVariance, Residuals, Sampler, Weighted, solve};
+use fmm_fit::posterior::{Calibration, Posterior, Prior, Sampler};
+use fmm_fit::{Options, ResidualVariance, Residuals, Weighted, solve};
 use fmm_friction::{Berger, CoulombViscous, LawFamily};
 use fmm_identify::Problem;
 use fmm_model::Oscillator;

@@ -1,10 +1,10 @@
-//! Names at the root of a crate: each is used by somebody else.
+//! Names that a crate gives out: each is used by somebody else.
 
 use std::collections::BTreeSet;
 
-use super::source::{crates, files, first_names, text, words};
+use super::source::{crates, files, first_names, root, text, words};
 
-/// Names at a crate's root that nobody else names; the list only shrinks.
+/// Names that nobody else names; the list only shrinks.
 const UNUSED: &[&str] = &[
     "fmm_identify::ImpactSummary",
     "fmm_identify::PredictiveCheck",
@@ -20,9 +20,9 @@ const UNUSED: &[&str] = &[
 /// Folders of those who use the crates beside other crates.
 const USERS: [&str; 5] = ["examples", "benches", "tests", ".ci/downstream", "fuzz"];
 
-/// The names that `lib.rs` gives out.
-fn exported(name: &str) -> BTreeSet<String> {
-    let text = text(format!("crates/{name}/src/lib.rs").as_ref());
+/// The names that a file gives out.
+fn given_out(path: &str) -> BTreeSet<String> {
+    let text = text(path.as_ref());
     let text: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
     let mut names = BTreeSet::new();
     for statement in text.split("pub use ").skip(1) {
@@ -34,6 +34,19 @@ fn exported(name: &str) -> BTreeSet<String> {
         }
     }
     names.extend(first_names(&text, "pub mod ").into_iter().map(str::to_owned));
+    names
+}
+
+/// The names that a crate gives out: those of `lib.rs`, and those of the folders that are public modules.
+fn exported(name: &str) -> BTreeSet<String> {
+    let source = format!("crates/{name}/src");
+    let mut names = given_out(&format!("{source}/lib.rs"));
+    for module in names.clone() {
+        let file = format!("{source}/{module}/mod.rs");
+        if root().join(&file).exists() {
+            names.extend(given_out(&file));
+        }
+    }
     names
 }
 

@@ -71,13 +71,13 @@
 //! | which parameters are determined? | [`Fit::null_directions`], [`Estimate::status`] |
 //! | how well? | [`Fit::covariance`], [`Fit::interval`] |
 //! | how well, where the model bends? | [`ProfileInterval`] |
-//! | what is probable, where values end at bounds or priors count? | `Sampler`, `Posterior` (feature `sampler`) |
-//! | is the posterior by a model of my own right? | `Calibration` (feature `sampler`) |
+//! | what is probable, where values end at bounds or priors count? | `posterior::Sampler` (feature `sampler`) |
+//! | is the posterior by a model of my own right? | `posterior::Calibration` (feature `sampler`) |
 //! | what do fixed values do to the estimates? | [`Sensitivity`]; by trials [`Refit`] |
 //! | how well is the model known elsewhere? | [`Fit::predict`], [`Prediction`] |
 //! | are the residuals independent, and how many count? | [`autocorrelation`], [`effective_count`] |
 //! | is a further parameter worth having? | [`FTest`], [`Fit::corrected_akaike`] |
-//! | which measurements next? | [`Information`], [`DesignSearch`] |
+//! | which measurements next? | [`design::Information`], [`design::DesignSearch`] |
 //! | which straight line, polynomial, columns? | [`StraightLine`], [`Polynomial`], [`LinearRegression`]: no start values |
 //! | a line with uncertainties in both variables? | [`YorkLine`] |
 //! | a line through results that differ by more than their uncertainties? | [`RandomEffectsLine`] |
@@ -135,12 +135,12 @@
 
 mod algebra;
 mod comparison;
-mod design;
+pub mod design;
 mod diagnostics;
 mod error;
 mod fitting;
 #[cfg(feature = "sampler")]
-mod posterior;
+pub mod posterior;
 mod problem;
 mod regression;
 mod result;
@@ -149,9 +149,6 @@ mod solver;
 mod uncertainty;
 
 pub use comparison::FTest;
-pub use design::design_case::{DesignCase, DesignCriterion, DesignUncertainty};
-pub use design::information::Information;
-pub use design::search::{ChosenDesign, DesignSearch};
 pub use diagnostics::{autocorrelation, autocorrelation_time, effective_count};
 pub use error::FitError;
 pub use fitting::argmin::BoundedLevenbergMarquardt;
@@ -160,18 +157,6 @@ pub use fitting::joint::Joint;
 pub use fitting::multi_start::MultiStart;
 pub use fitting::solve::{solve, solve_observed};
 pub use fmm_model::{Bounds, Dual, Parameter, Scalar};
-#[cfg(feature = "sampler")]
-pub use posterior::calibration::Calibration;
-#[cfg(feature = "sampler")]
-pub use posterior::marginal::Marginal;
-#[cfg(feature = "sampler")]
-pub use posterior::prior::Prior;
-#[cfg(feature = "sampler")]
-pub use posterior::result::Posterior;
-#[cfg(feature = "sampler")]
-pub use posterior::sampler::Sampler;
-#[cfg(feature = "sampler")]
-pub use posterior::warning::PosteriorWarning;
 pub use problem::automatic::{Automatic, Model};
 pub use problem::block::Block;
 pub use problem::knowledge::{WithFixed, WithPriors};

@@ -54,7 +54,7 @@
 //! | A force measured along a motion: a joint, a tribometer, a damper? | [`ForceRecord`] in [`identify`] and [`compare`]; [`Terms`] lists what acts beside friction |
 //! | The same without a law? | [`ForceRecord::friction_over_speed`] and [`friction_over_speed_and_load`](ForceRecord::friction_over_speed_and_load), [`ForceRecord::loops`], [`ForceRecord::onsets`] |
 //! | What if mass, stiffness or damping were others? | [`Problem::declared`] with [`Sensitivity`](fmm_fit::Sensitivity) or [`Refit`](fmm_fit::Refit) |
-//! | Which test next? | [`Plan`]: what [`PlannedTest`]s would tell beside what is known, and which set of them is best |
+//! | Which test next? | [`design::Plan`]: what [`PlannedTest`](design::PlannedTest)s would tell beside what is known, and which set of them is best |
 //! | Between which values does it lie? | [`Finding::interval`], by Student's t with the degrees of freedom of all that is uncertain |
 //! | Does value ± k u mislead? | [`Identification::profiles`] |
 //! | What makes it uncertain? | [`Finding::budget`]: residuals, mass or stiffness, load, gain, other laws |
@@ -105,7 +105,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod candidate;
-mod design;
+pub mod design;
 mod error;
 mod experiment;
 mod finding;
@@ -117,7 +117,7 @@ mod law;
 mod linear_algebra;
 mod machine;
 #[cfg(feature = "sampler")]
-mod posterior;
+pub mod posterior;
 mod problem;
 mod quantities;
 mod report;
@@ -128,7 +128,6 @@ mod warning;
 mod written;
 
 pub use candidate::Candidate;
-pub use design::{Aim, DesignPrediction, Guess, Plan, PlannedCurve, PlannedSensor, PlannedTest};
 pub use error::IdentifyError;
 pub use experiment::force::{ForceLoop, ForceRecord, Onset, SpeedBin};
 pub use experiment::{
@@ -139,8 +138,6 @@ pub use friction_curve::{FrictionCurve, FrictionLevel};
 pub use identification::{FittedMotion, Identification, Profile, Profiles, Validation};
 pub use judgement::{Comparison, FrictionOverLoad, Inquiry, ScoreTest, Unseen, compare, identify, search};
 pub use machine::{Known, Machine, Terms};
-#[cfg(feature = "sampler")]
-pub use posterior::{IdentificationPosterior, IntervalComparison, PredictiveCheck};
 pub use problem::Problem;
 pub use warning::{Severity, Warning};
 

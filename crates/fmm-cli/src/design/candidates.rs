@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use fmm_identify::{Known, PlannedSensor, PlannedTest};
+use fmm_identify::Known;
+use fmm_identify::design::{PlannedSensor, PlannedTest};
 use fmm_model::{ModelError, Rounded};
 use fmm_record::{Quantity, Record};
 use serde::Deserialize;

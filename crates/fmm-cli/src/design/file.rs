@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt;
 
-use fmm_identify::{Aim, Candidate, Guess, Machine, PlannedTest};
+use fmm_identify::design::{Aim, Guess, PlannedTest};
+use fmm_identify::{Candidate, Machine};
 use fmm_model::{Oscillator, Rounded};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};

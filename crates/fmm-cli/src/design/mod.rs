@@ -15,7 +15,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use fmm_identify::{Aim, DesignPrediction, Finding, FrictionCurve, FrictionLevel, Plan};
+use fmm_identify::design::{Aim, DesignPrediction, Plan};
+use fmm_identify::{Finding, FrictionCurve, FrictionLevel};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Detail, Document};
@@ -170,7 +171,7 @@ fn answer(wanted: Wanted) -> Result<Choice, Box<dyn Error>> {
         Aim::FrictionAt(speed) => Some((speed, plan.curve()?)),
         _ => None,
     };
-    let costs: Vec<f64> = plan.tests().iter().map(fmm_identify::PlannedTest::cost).collect();
+    let costs: Vec<f64> = plan.tests().iter().map(fmm_identify::design::PlannedTest::cost).collect();
     let best = match (choose.tests, choose.budget) {
         (Some(tests), _) => search.best(tests)?,
         (None, budget) => search.best_within(&costs, budget.unwrap_or_default())?,

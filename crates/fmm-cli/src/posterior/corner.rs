@@ -1,6 +1,6 @@
 //! Corner plot of a posterior: each parameter by itself on the diagonal, each pair below it.
 
-use fmm_fit::Marginal;
+use fmm_fit::posterior::Marginal;
 
 use crate::figure::{Cells, Panel, Role, drawn_corner, label};
 use crate::page::words;

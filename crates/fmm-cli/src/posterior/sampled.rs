@@ -2,8 +2,9 @@
 
 use std::error::Error;
 
-use fmm_fit::Marginal;
-use fmm_identify::{Experiment, Identification, IdentificationPosterior, IntervalComparison};
+use fmm_fit::posterior::Marginal;
+use fmm_identify::posterior::{IdentificationPosterior, IntervalComparison};
+use fmm_identify::{Experiment, Identification};
 use fmm_model::Rounded;
 use serde::Serialize;
 

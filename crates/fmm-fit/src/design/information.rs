@@ -26,7 +26,7 @@ use crate::solver::evaluation::Evaluator;
 /// by the Schur complement ([`of_problem`](Self::of_problem)): what is left adds up.
 ///
 /// ```
-/// use fmm_fit::Information;
+/// use fmm_fit::design::Information;
 ///
 /// // A straight line a + b x, measured at 0, 1 and 2 with u = 0.1.
 /// let rows: Vec<f64> = [0.0, 1.0, 2.0].iter().flat_map(|x| [1.0, *x]).collect();

@@ -1,6 +1,10 @@
 //! Design of experiments: the measurements with the most information, before they are made.
 
-pub(crate) mod design_case;
-pub(crate) mod exchange;
-pub(crate) mod information;
-pub(crate) mod search;
+mod design_case;
+mod exchange;
+mod information;
+mod search;
+
+pub use design_case::{DesignCase, DesignCriterion, DesignUncertainty};
+pub use information::Information;
+pub use search::{ChosenDesign, DesignSearch};

@@ -17,7 +17,7 @@ use crate::error::FitError;
 /// is made small, or the [worst](Self::for_worst_case).
 ///
 /// ```
-/// use fmm_fit::{DesignCase, DesignCriterion, DesignSearch, Information};
+/// use fmm_fit::design::{DesignCase, DesignCriterion, DesignSearch, Information};
 ///
 /// // A straight line, which may be measured at 21 places between −1 and 1: half of the measurements at either end.
 /// let candidates = (-10..=10).map(|i| Information::of_rows(2, &[1.0, f64::from(i) / 10.0])).collect::<Result<_, _>>()?;

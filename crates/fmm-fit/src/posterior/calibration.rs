@@ -33,7 +33,8 @@ const FEWEST_RECORDS: usize = 5 * BINS;
 /// It is a tool for a law of one's own: simulate records with it, and see whether its posterior is right.
 ///
 /// ```
-/// use fmm_fit::{Automatic, Bounds, Calibration, EvaluationError, Model, Parameter, Prior, ResidualVariance, Sampler, Scalar, Weighted};
+/// use fmm_fit::posterior::{Calibration, Prior, Sampler};
+/// use fmm_fit::{Automatic, Bounds, EvaluationError, Model, Parameter, ResidualVariance, Scalar, Weighted};
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use rand_distr::{Distribution, Normal};
 ///

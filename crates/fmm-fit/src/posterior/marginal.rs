@@ -16,7 +16,7 @@ use crate::posterior::convergence::{Convergence, quantile};
 /// | [`error_of_mean`](Self::error_of_mean), [`error_of_deviation`](Self::error_of_deviation) | Monte Carlo standard errors | of the quantity |
 ///
 /// ```
-/// use fmm_fit::Marginal;
+/// use fmm_fit::posterior::Marginal;
 /// use fmm_model::Parameter;
 ///
 /// // Two chains of four draws.

@@ -1,16 +1,23 @@
 //! Posterior of the parameters of a problem, by sampling.
 
-pub(crate) mod calibration;
-pub(crate) mod check;
-pub(crate) mod convergence;
-pub(crate) mod coordinates;
-pub(crate) mod marginal;
-pub(crate) mod mode;
-pub(crate) mod nuts;
-pub(crate) mod prior;
-pub(crate) mod report;
-pub(crate) mod result;
-pub(crate) mod sampler;
-pub(crate) mod target;
-pub(crate) mod transform;
-pub(crate) mod warning;
+mod calibration;
+mod check;
+mod convergence;
+mod coordinates;
+mod marginal;
+mod mode;
+mod nuts;
+mod prior;
+mod report;
+mod result;
+mod sampler;
+mod target;
+mod transform;
+mod warning;
+
+pub use calibration::Calibration;
+pub use marginal::Marginal;
+pub use prior::Prior;
+pub use result::Posterior;
+pub use sampler::Sampler;
+pub use warning::PosteriorWarning;

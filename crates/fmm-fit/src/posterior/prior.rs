@@ -23,7 +23,7 @@ const TRIES: usize = 10_000;
 /// posterior has one if the data determine the parameter.
 ///
 /// ```
-/// use fmm_fit::Prior;
+/// use fmm_fit::posterior::Prior;
 ///
 /// let load = Prior::normal(14.0, 0.1)?; // N
 /// assert!(load.log_density(14.0) > load.log_density(14.2));

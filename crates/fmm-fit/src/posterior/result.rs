@@ -137,7 +137,8 @@ impl Posterior {
     /// draw.
     ///
     /// ```
-    /// use fmm_fit::{Options, Parameter, Sampler, curve, solve};
+    /// use fmm_fit::posterior::Sampler;
+    /// use fmm_fit::{Options, Parameter, curve, solve};
     /// use fmm_fit::Scalar;
     ///
     /// let (t, x) = ([0.0, 1.0, 2.0, 3.0, 4.0, 5.0], [2.003, 1.211, 0.738, 0.442, 0.271, 0.166]);

@@ -42,7 +42,8 @@ const TRIES: usize = 100;
 /// The result is a function of problem, fit and seed, whatever the number of threads.
 ///
 /// ```
-/// use fmm_fit::{Options, PosteriorWarning, Prior, Sampler, curve, solve};
+/// use fmm_fit::posterior::{PosteriorWarning, Prior, Sampler};
+/// use fmm_fit::{Options, curve, solve};
 /// use fmm_fit::Scalar;
 ///
 /// let (t, x) = ([0.0, 1.0, 2.0, 3.0, 4.0], [2.003, 1.211, 0.738, 0.442, 0.271]);

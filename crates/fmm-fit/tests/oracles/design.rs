@@ -6,7 +6,7 @@
 //! <https://doi.org/10.1214/aoms/1177700379> (extrapolation); G. E. P. Box, H. L. Lucas, Biometrika 46 (1959) 77,
 //! <https://doi.org/10.1093/biomet/46.1-2.77> (exponential decay).
 
-use fmm_fit::{DesignCase, DesignCriterion, DesignSearch, Information};
+use fmm_fit::design::{DesignCase, DesignCriterion, DesignSearch, Information};
 
 /// A polynomial of this degree at each of the places.
 fn polynomial(degree: i32, places: &[f64]) -> Vec<Information> {

@@ -1,6 +1,7 @@
 //! Posteriors that bounds cut, against quadrature in two dimensions.
 
-use fmm_fit::{Bounds, Parameter, Prior, Sampler};
+use fmm_fit::posterior::{Prior, Sampler};
+use fmm_fit::{Bounds, Parameter};
 
 use crate::problems::{Linear, assert_moments, fitted, moments_by_quadrature};
 

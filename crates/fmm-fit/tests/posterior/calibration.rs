@@ -1,6 +1,7 @@
 //! Simulation-based calibration of a straight line.
 
-use fmm_fit::{Bounds, Calibration, EvaluationError, FitError, Parameter, Prior, ResidualVariance, Sampler};
+use fmm_fit::posterior::{Calibration, Prior, Sampler};
+use fmm_fit::{Bounds, EvaluationError, FitError, Parameter, ResidualVariance};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};

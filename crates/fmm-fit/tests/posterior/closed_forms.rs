@@ -1,6 +1,7 @@
 //! Linear models with normal residuals, whose posteriors are Student's t or normal.
 
-use fmm_fit::{Prior, ResidualVariance, Sampler};
+use fmm_fit::ResidualVariance;
+use fmm_fit::posterior::{Prior, Sampler};
 use fmm_model::coverage_factor;
 
 use crate::problems::{assert_moments, fitted, line};

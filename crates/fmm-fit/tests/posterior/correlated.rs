@@ -1,6 +1,7 @@
 //! Correlated residuals, against quadrature.
 
-use fmm_fit::{Block, Derivatives, EvaluationError, Parameter, Residuals, Sampler};
+use fmm_fit::posterior::Sampler;
+use fmm_fit::{Block, Derivatives, EvaluationError, Parameter, Residuals};
 
 use crate::problems::{assert_moments, fitted, moments_by_quadrature};
 

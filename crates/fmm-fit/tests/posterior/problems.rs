@@ -1,6 +1,7 @@
 //! Linear problems, and moments by quadrature.
 
-use fmm_fit::{Derivatives, EvaluationError, Fit, Marginal, Options, Parameter, Residuals, solve};
+use fmm_fit::posterior::Marginal;
+use fmm_fit::{Derivatives, EvaluationError, Fit, Options, Parameter, Residuals, solve};
 
 /// Residuals Σⱼ aᵢⱼ θⱼ − yᵢ.
 pub(crate) struct Linear {

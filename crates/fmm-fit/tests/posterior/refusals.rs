@@ -1,6 +1,7 @@
 //! Refusals: problems and options without a posterior.
 
-use fmm_fit::{Bounds, FitError, Parameter, Prior, Sampler};
+use fmm_fit::posterior::{Prior, Sampler};
+use fmm_fit::{Bounds, FitError, Parameter};
 
 use crate::problems::{Linear, fitted, line};
 

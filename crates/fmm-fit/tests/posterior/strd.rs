@@ -1,6 +1,7 @@
 //! A nonlinear reference data set of NIST, against quadrature.
 
-use fmm_fit::{Bounds, Parameter, Sampler, Scalar, curve};
+use fmm_fit::posterior::Sampler;
+use fmm_fit::{Bounds, Parameter, Scalar, curve};
 
 use crate::problems::{assert_moments, fitted, moments_by_quadrature};
 

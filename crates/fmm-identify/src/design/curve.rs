@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fmm_fit::{DesignCase, DesignUncertainty, Information};
+use fmm_fit::design::{DesignCase, DesignUncertainty, Information};
 use fmm_model::{ModelError, Rounded};
 
 use crate::design::local::{Local, design_error};
@@ -22,7 +22,8 @@ use crate::friction_curve::path::Path;
 /// the curve of records whose noise is zero in the mean.
 ///
 /// ```
-/// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedCurve, PlannedSensor, PlannedTest};
+/// use fmm_identify::design::{Aim, Guess, Plan, PlannedCurve, PlannedSensor, PlannedTest};
+/// use fmm_identify::{Candidate, Known, Machine};
 /// use fmm_record::Quantity;
 ///
 /// let machine = Machine::of_mass(Known::exact(10.391)?)?.with_normal_load(Known::exact(14.0)?)?;

@@ -1,6 +1,6 @@
 //! Guess of the findings of the tests: values, their uncertainty, and earlier measurements.
 
-use fmm_fit::Information;
+use fmm_fit::design::Information;
 use fmm_friction::Role;
 use fmm_model::{ModelError, Parameter, Rounded, Unit};
 use fmm_record::{Quantity, Record};
@@ -18,7 +18,8 @@ use crate::machine::Scale;
 /// Knowledge before the tests: the machine, the law with guessed values, and earlier measurements.
 ///
 /// ```
-/// use fmm_identify::{Candidate, Guess, Known, Machine};
+/// use fmm_identify::design::Guess;
+/// use fmm_identify::{Candidate, Known, Machine};
 ///
 /// let machine = Machine::of_mass(Known::new(10.391, 0.005)?)?.with_normal_load(Known::exact(14.0)?)?;
 /// // 2.198 Hz; μ₀, μ₁ and α of Berger's law, and the damping of the machine (N s/m).
@@ -139,7 +140,8 @@ impl Guess {
     /// them is the sliding one.
     ///
     /// ```
-    /// use fmm_identify::{Candidate, Guess, Machine};
+    /// use fmm_identify::design::Guess;
+    /// use fmm_identify::{Candidate, Machine};
     ///
     /// let found = [("friction_per_mass", 0.34), ("damping_per_mass", 0.03)];
     /// let guess = Guess::of_findings(Machine::per_unit_mass(), &Candidate::named("coulomb + linear")?, 2.2, &found)?;

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use fmm_fit::{FitError, Information, Residuals};
+use fmm_fit::design::Information;
+use fmm_fit::{FitError, Residuals};
 use fmm_friction::Role;
 use fmm_model::{Dual, Parameter, Scalar, Unit};
 use fmm_record::{Quantity, Record};

@@ -1,6 +1,6 @@
 //! Plan: the tests that may be made, their information, and the best set of them.
 
-use fmm_fit::{ChosenDesign, DesignCase, DesignCriterion, DesignSearch, Information};
+use fmm_fit::design::{ChosenDesign, DesignCase, DesignCriterion, DesignSearch, Information};
 
 use crate::design::inputs::{Input, Inputs};
 use crate::design::local::{self, Local};
@@ -20,7 +20,8 @@ use crate::quantities::table::Table;
 /// sensor. Repeats therefore do not reduce such an error.
 ///
 /// ```
-/// use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
+/// use fmm_identify::design::{Aim, Guess, Plan, PlannedSensor, PlannedTest};
+/// use fmm_identify::{Candidate, Known, Machine};
 /// use fmm_record::Quantity;
 ///
 /// let machine = Machine::of_mass(Known::exact(10.391)?)?.with_normal_load(Known::exact(14.0)?)?;

@@ -9,7 +9,8 @@ use crate::machine::Known;
 /// A test that may be made: its motion, its load, added mass or stiffness, and its sensor.
 ///
 /// ```
-/// use fmm_identify::{Known, PlannedSensor, PlannedTest};
+/// use fmm_identify::design::{PlannedSensor, PlannedTest};
+/// use fmm_identify::Known;
 /// use fmm_record::Quantity;
 ///
 /// let sensor = PlannedSensor::new(Quantity::Velocity, 1e-4)?;
@@ -70,7 +71,7 @@ const MOST_SAMPLES: f64 = 1e7;
 
 impl PlannedSensor {
     /// A sensor of displacement, velocity or acceleration, with white `noise` of this standard deviation (m, m/s, m/s²,
-    /// or in the length of the [`Guess`](crate::Guess)).
+    /// or in the length of the [`Guess`](crate::design::Guess)).
     ///
     /// # Errors
     /// [`IdentifyError::WrongRecord`] for another quantity, [`IdentifyError::InvalidInput`] for a noise that is not
@@ -114,7 +115,7 @@ impl PlannedSensor {
 }
 
 impl PlannedTest {
-    /// The machine is let go at rest at `position` (m, or the length of the [`Guess`](crate::Guess)) and recorded
+    /// The machine is let go at rest at `position` (m, or the length of the [`Guess`](crate::design::Guess)) and recorded
     /// `rate` times a second for `duration` (s).
     ///
     /// # Errors

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use fmm_fit::{EstimateStatus, Information, NullDirection};
+use fmm_fit::design::Information;
+use fmm_fit::{EstimateStatus, NullDirection};
 use fmm_model::Parameter;
 
 use crate::design::{Guess, local};

@@ -1,6 +1,6 @@
 //! Friction curve that is expected of records before they are made.
 
-use fmm_fit::Information;
+use fmm_fit::design::Information;
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidate::Candidate;

@@ -1,6 +1,6 @@
 //! Intervals of three kinds beside each other.
 
-use fmm_fit::Marginal;
+use fmm_fit::posterior::Marginal;
 
 use crate::finding::Finding;
 use crate::identification::{Identification, Profile, Profiles};

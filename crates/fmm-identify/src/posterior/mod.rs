@@ -9,7 +9,8 @@ mod serialised;
 pub use intervals::IntervalComparison;
 pub use predictive::PredictiveCheck;
 
-use fmm_fit::{FitError, Marginal, Posterior, Sampler};
+use fmm_fit::FitError;
+use fmm_fit::posterior::{Marginal, Posterior, Sampler};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

@@ -1,6 +1,7 @@
 //! Posterior predictive checks: features of records from the posterior beside the measured record.
 
-use fmm_fit::{EvaluationError, Posterior};
+use fmm_fit::EvaluationError;
+use fmm_fit::posterior::Posterior;
 use fmm_record::Record;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

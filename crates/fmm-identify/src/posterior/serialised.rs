@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fmm_fit::Marginal;
+use fmm_fit::posterior::Marginal;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use crate::posterior::intervals::LEVEL;

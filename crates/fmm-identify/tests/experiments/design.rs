@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use fmm_friction::{CoulombViscous, Stribeck};
+use fmm_identify::design::{Aim, Guess, Plan, PlannedSensor, PlannedTest};
 use fmm_identify::{
-    Aim, Candidate, Experiment, FrictionCurve, Guess, IdentifyError, Known, Machine, Offset, Plan, PlannedSensor,
-    PlannedTest, Preparation, identify,
+    Candidate, Experiment, FrictionCurve, IdentifyError, Known, Machine, Offset, Preparation, identify,
 };
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
@@ -248,7 +248,9 @@ fn a_pilot_is_where_tests_begin() {
         assert!((-1e-6..0.03).contains(&(ours / theirs - 1.0)), "{name}: {ours} and {theirs}");
     }
     let after = plan.predict(&[1]).unwrap();
-    let u = |prediction: &fmm_identify::DesignPrediction| prediction.finding("damping").unwrap().uncertainty().unwrap();
+    let u = |prediction: &fmm_identify::design::DesignPrediction| {
+        prediction.finding("damping").unwrap().uncertainty().unwrap()
+    };
     assert!(u(&after) < 0.2 * u(&before), "{} {}", u(&after), u(&before));
     let robust = plan.robust_search(&Aim::finding("damping"), &draws).unwrap();
     let [mean, worst] = [robust.clone(), robust.for_worst_case()].map(|search| search.best(2).unwrap());

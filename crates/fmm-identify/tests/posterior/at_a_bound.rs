@@ -1,6 +1,7 @@
 //! The machine of the thesis with a small viscous part, which the bound at zero cuts, against quadrature.
 
-use fmm_fit::{Options, Residuals, Sampler, solve};
+use fmm_fit::posterior::Sampler;
+use fmm_fit::{Options, Residuals, solve};
 use fmm_friction::CoulombViscous;
 use fmm_identify::Problem;
 use fmm_model::Oscillator;

@@ -1,7 +1,8 @@
 //! Posteriors of identifications: findings, the three intervals, predictive checks.
 
 use fmm_friction::{Coulomb, CoulombViscous};
-use fmm_identify::{Experiment, Identification, Known, Machine, PredictiveCheck, Preparation, identify};
+use fmm_identify::posterior::PredictiveCheck;
+use fmm_identify::{Experiment, Identification, Known, Machine, Preparation, identify};
 use fmm_model::Oscillator;
 use fmm_record::{Quantity, Record};
 use fmm_sim::{Engine, Exact, Sampling, Scenario};

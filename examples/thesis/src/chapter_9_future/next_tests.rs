@@ -1,6 +1,7 @@
 //! Tests that would have told more: the thesis' own ring-downs as a plan.
 
-use fmm_identify::{Aim, Candidate, Guess, Known, Machine, Plan, PlannedSensor, PlannedTest};
+use fmm_identify::design::{Aim, Guess, Plan, PlannedSensor, PlannedTest};
+use fmm_identify::{Candidate, Known, Machine};
 use fmm_model::Oscillator;
 use fmm_record::Quantity;
 
