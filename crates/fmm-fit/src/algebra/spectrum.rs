@@ -37,28 +37,13 @@ impl Spectrum {
             .map(|column| triangle.column_norm(column))
             .map(|norm| if norm > 0.0 { norm } else { 1.0 })
             .collect();
-        // Each entry holds a column of R S⁻¹ V and the column of V below it.
-        let mut columns: Vec<Vec<f64>> = (0..order)
-            .map(|j| {
-                let scaled = (0..order).map(|row| if row > j { 0.0 } else { triangle.r(row, j) / scales[j] });
-                scaled.chain((0..order).map(|row| f64::from(row == j))).collect()
-            })
-            .collect();
-        orthogonalise(&mut columns, order);
-        let mut triples: Vec<(f64, f64, Vec<f64>)> = columns
-            .into_iter()
-            .map(|column| {
-                let (left, right) = column.split_at(order);
-                let value = sum_of_squares(left).sqrt();
-                let along: f64 = left.iter().enumerate().map(|(row, l)| l * triangle.q(row)).sum();
-                (value, if value > 0.0 { along / value } else { 0.0 }, right.to_vec())
-            })
-            .collect();
-        triples.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let element = |row: usize, j: usize| if row > j { 0.0 } else { triangle.r(row, j) / scales[j] };
+        let triples = singular_triples(order, element);
         let mut spectrum = Self { scales, singular: vec![], right: vec![], along: vec![] };
-        for (value, along, right) in triples {
+        for (value, left, right) in triples {
+            let along: f64 = left.iter().enumerate().map(|(row, l)| l * triangle.q(row)).sum();
             spectrum.singular.push(value);
-            spectrum.along.push(along);
+            spectrum.along.push(if value > 0.0 { along / value } else { 0.0 });
             spectrum.right.push(right);
         }
         spectrum
@@ -102,8 +87,23 @@ pub(crate) fn is_surely_of_full_rank(triangle: &Triangle, threshold: f64) -> boo
     determinant > threshold * (std::f64::consts::E * order as f64).sqrt()
 }
 
+/// Singular values of a square matrix, descending, each with the image of its right vector and the vector itself.
+pub(crate) fn singular_triples(order: usize, element: impl Fn(usize, usize) -> f64) -> Vec<(f64, Vec<f64>, Vec<f64>)> {
+    // Each column is one of A V above one of V.
+    let both = |row: usize, j: usize| if row < order { element(row, j) } else { f64::from(row - order == j) };
+    let mut columns: Vec<Vec<f64>> = (0..order).map(|j| (0..2 * order).map(|row| both(row, j)).collect()).collect();
+    orthogonalise(&mut columns, order);
+    let triple = |column: &Vec<f64>| {
+        let (image, vector) = column.split_at(order);
+        (sum_of_squares(image).sqrt(), image.to_vec(), vector.to_vec())
+    };
+    let mut triples: Vec<_> = columns.iter().map(triple).collect();
+    triples.sort_by(|a, b| b.0.total_cmp(&a.0));
+    triples
+}
+
 /// Rotates pairs of columns until the first `order` elements of all are orthogonal.
-pub(crate) fn orthogonalise(columns: &mut [Vec<f64>], order: usize) {
+fn orthogonalise(columns: &mut [Vec<f64>], order: usize) {
     // Columns of unit length shrink to this only when nothing but rounding is left of them.
     const NOTHING: f64 = 1e-36;
     // Convergence is quadratic and takes six to ten sweeps; the limit is for rounding at the last digit.

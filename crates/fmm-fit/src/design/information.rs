@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::algebra::definite::add_square;
-use crate::algebra::spectrum::orthogonalise;
+use crate::algebra::spectrum::singular_triples;
 use crate::algebra::triangle::Triangle;
 use crate::error::FitError;
 use crate::problem::block::Scratch;
@@ -212,7 +212,7 @@ impl Information {
 
     /// Number of directions about which something is known.
     pub fn rank(&self) -> usize {
-        self.spectrum().rank()
+        Eigen::of(self).rank()
     }
 
     /// u²(gᵀθ) for a combination of the parameters; `None` if it is not determined.
@@ -231,7 +231,7 @@ impl Information {
         for combination in [first, second] {
             self.require(combination)?;
         }
-        let spectrum = self.spectrum();
+        let spectrum = Eigen::of(self);
         let along = |combination: &[f64]| spectrum.along(combination);
         let Some((a, b)) = along(first).zip(along(second)) else { return Ok(None) };
         Ok(Some(spectrum.values.iter().zip(a.iter().zip(&b)).map(|(value, (a, b))| a * b / value).sum()))
@@ -247,7 +247,7 @@ impl Information {
                 return Err(mismatch("parameters of an information", count, self.order));
             }
         }
-        let spectrum = self.spectrum();
+        let spectrum = Eigen::of(self);
         let columns: Vec<usize> = (0..self.order).collect();
         let names: Vec<&str> = parameters.iter().map(Parameter::name).collect();
         let null = &spectrum.vectors[spectrum.rank()..];
@@ -261,25 +261,21 @@ impl Information {
     /// [`FitError::Count`] for another number of values than parameters.
     pub fn draws(&self, values: &[f64], count: usize, seed: u64) -> Result<Vec<Vec<f64>>, FitError> {
         self.require(values)?;
-        let Eigen { scales, values: eigenvalues, vectors } = self.spectrum();
-        let known = self.spectrum().rank();
+        let spectrum = Eigen::of(self);
+        let known = &spectrum.values[..spectrum.rank()];
         let draw = |number: usize| {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
             random.set_stream(number as u64);
             let mut drawn = values.to_vec();
-            for (eigenvalue, vector) in eigenvalues[..known].iter().zip(&vectors) {
+            for (eigenvalue, vector) in known.iter().zip(&spectrum.vectors) {
                 let step = normal(&mut random) / eigenvalue.sqrt();
-                for ((value, component), scale) in drawn.iter_mut().zip(vector).zip(&scales) {
+                for ((value, component), scale) in drawn.iter_mut().zip(vector).zip(&spectrum.scales) {
                     *value += step * component / scale;
                 }
             }
             drawn
         };
         Ok((0..count).map(draw).collect())
-    }
-
-    fn spectrum(&self) -> Eigen {
-        Eigen::of(self)
     }
 
     pub(crate) fn elements(&self) -> &[f64] {
@@ -332,22 +328,8 @@ impl Eigen {
         let scale = |j: usize| Some(information.element(j, j).sqrt()).filter(|norm| *norm > 0.0).unwrap_or(1.0);
         let scales: Vec<f64> = (0..order).map(scale).collect();
         // The singular values of a positive semidefinite matrix are its eigenvalues.
-        let mut columns: Vec<Vec<f64>> = (0..order)
-            .map(|j| {
-                let scaled = (0..order).map(|i| information.element(i, j) / (scales[i] * scales[j]));
-                scaled.chain((0..order).map(|row| f64::from(row == j))).collect()
-            })
-            .collect();
-        orthogonalise(&mut columns, order);
-        let mut pairs: Vec<(f64, Vec<f64>)> = columns
-            .iter()
-            .map(|column| {
-                let (image, vector) = column.split_at(order);
-                (image.iter().map(|x| x * x).sum::<f64>().sqrt(), vector.to_vec())
-            })
-            .collect();
-        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let (values, vectors) = pairs.into_iter().unzip();
+        let triples = singular_triples(order, |i, j| information.element(i, j) / (scales[i] * scales[j]));
+        let (values, vectors) = triples.into_iter().map(|(value, _, vector)| (value, vector)).unzip();
         Self { scales, values, vectors }
     }
 
