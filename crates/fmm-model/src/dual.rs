@@ -1,7 +1,5 @@
 //! Dual number: a value with its partial derivatives.
 
-use core::ops::{Add, Div, Mul, Neg, Sub};
-
 use crate::math;
 use crate::scalar::{Scalar, scalar_operators};
 
@@ -35,45 +33,8 @@ impl<const N: usize> Dual<N> {
         }
         Self { value, partials }
     }
-}
 
-impl<const N: usize> From<f64> for Dual<N> {
-    fn from(value: f64) -> Self {
-        Self { value, partials: [0.0; N] }
-    }
-}
-
-impl<const N: usize> Neg for Dual<N> {
-    type Output = Self;
-    fn neg(self) -> Self {
-        self.chain(-self.value, -1.0)
-    }
-}
-
-impl<const N: usize> Add for Dual<N> {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        self.chain_with(self.value + other.value, 1.0, other, 1.0)
-    }
-}
-
-impl<const N: usize> Sub for Dual<N> {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self.chain_with(self.value - other.value, 1.0, other, -1.0)
-    }
-}
-
-impl<const N: usize> Mul for Dual<N> {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        self.chain_with(self.value * other.value, other.value, other, self.value)
-    }
-}
-
-impl<const N: usize> Div for Dual<N> {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
+    fn over(self, other: Self) -> Self {
         let value = self.value / other.value;
         // Not with the reciprocal of the divisor, which may be infinite where the quotient is not.
         let mut partials = self.partials;
@@ -84,35 +45,20 @@ impl<const N: usize> Div for Dual<N> {
     }
 }
 
-impl<const N: usize> Add<f64> for Dual<N> {
-    type Output = Self;
-    fn add(self, other: f64) -> Self {
-        Self { value: self.value + other, ..self }
+impl<const N: usize> From<f64> for Dual<N> {
+    fn from(value: f64) -> Self {
+        Self { value, partials: [0.0; N] }
     }
 }
 
-impl<const N: usize> Sub<f64> for Dual<N> {
-    type Output = Self;
-    fn sub(self, other: f64) -> Self {
-        Self { value: self.value - other, ..self }
-    }
+scalar_operators! {
+    Dual<N>, N: usize;
+    -a => a.chain(-a.value, -1.0);
+    a + b => a.chain_with(a.value + b.value, 1.0, b, 1.0), Self { value: a.value + b, ..a };
+    a - b => a.chain_with(a.value - b.value, 1.0, b, -1.0), Self { value: a.value - b, ..a };
+    a * b => a.chain_with(a.value * b.value, b.value, b, a.value), a.chain(a.value * b, b);
+    a / b => a.over(b), Self { value: a.value / b, partials: a.partials.map(|partial| partial / b) };
 }
-
-impl<const N: usize> Mul<f64> for Dual<N> {
-    type Output = Self;
-    fn mul(self, other: f64) -> Self {
-        self.chain(self.value * other, other)
-    }
-}
-
-impl<const N: usize> Div<f64> for Dual<N> {
-    type Output = Self;
-    fn div(self, other: f64) -> Self {
-        Self { value: self.value / other, partials: self.partials.map(|partial| partial / other) }
-    }
-}
-
-scalar_operators!(Dual<N>, N: usize);
 
 impl<const N: usize> Scalar for Dual<N> {
     const DIRECTIONS: usize = N;

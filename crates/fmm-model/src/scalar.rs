@@ -125,18 +125,47 @@ pub trait Scalar:
     }
 }
 
-/// Implements for a number type the operators of [`Scalar`] that follow from its own arithmetic: plain numbers on the
-/// left, assignments, and comparisons by values.
+/// Implements for a number type the operators of [`Scalar`] by its own arithmetic, each once with a number of the type and
+/// once with a plain one on the right; plain numbers on the left, assignments, and comparisons by values follow.
 ///
-/// The type needs `From<f64>`, and the four operations with itself and with `f64`. A parameter of the type follows it,
-/// as in `scalar_operators!(Dual<N>, N: usize)`.
+/// The type needs `From<f64>`. A parameter of the type follows it, as in `Dual<N>, N: usize`.
+///
+/// ```text
+/// scalar_operators! {
+///     Pair;
+///     -a => Pair(-a.0, -a.1);
+///     a + b => Pair(a.0 + b.0, a.1 + b.1), Pair(a.0 + b, a.1);
+///     a - b => Pair(a.0 - b.0, a.1 - b.1), Pair(a.0 - b, a.1);
+///     a * b => a.times(b), Pair(a.0 * b, a.1 * b);
+///     a / b => a.over(b), Pair(a.0 / b, a.1 / b);
+/// }
+/// ```
 #[macro_export]
 macro_rules! scalar_operators {
-    ($number:ty $(, $parameter:ident: $kind:ty)?) => {
-        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Add add AddAssign add_assign);
-        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Sub sub SubAssign sub_assign);
-        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Mul mul MulAssign mul_assign);
-        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Div div DivAssign div_assign);
+    (
+        $number:ty $(, $parameter:ident: $kind:ty)?;
+        -$a:ident => $negative:expr;
+        $a1:ident + $b1:ident => $sum:expr, $sum_with_plain:expr;
+        $a2:ident - $b2:ident => $difference:expr, $difference_with_plain:expr;
+        $a3:ident * $b3:ident => $product:expr, $product_with_plain:expr;
+        $a4:ident / $b4:ident => $quotient:expr, $quotient_with_plain:expr;
+    ) => {
+        impl$(<const $parameter: $kind>)? core::ops::Neg for $number {
+            type Output = Self;
+            fn neg(self) -> Self {
+                let $a = self;
+                $negative
+            }
+        }
+
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Add add AddAssign add_assign;
+            $a1, $b1 => $sum, $sum_with_plain);
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Sub sub SubAssign sub_assign;
+            $a2, $b2 => $difference, $difference_with_plain);
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Mul mul MulAssign mul_assign;
+            $a3, $b3 => $product, $product_with_plain);
+        $crate::scalar_operators!(@with $number $(, $parameter: $kind)?; Div div DivAssign div_assign;
+            $a4, $b4 => $quotient, $quotient_with_plain);
 
         impl$(<const $parameter: $kind>)? PartialEq for $number {
             fn eq(&self, other: &Self) -> bool {
@@ -162,7 +191,26 @@ macro_rules! scalar_operators {
             }
         }
     };
-    (@with $number:ty $(, $parameter:ident: $kind:ty)?; $trait:ident $method:ident $assign:ident $assign_method:ident) => {
+    (
+        @with $number:ty $(, $parameter:ident: $kind:ty)?; $trait:ident $method:ident $assign:ident $assign_method:ident;
+        $a:ident, $b:ident => $own:expr, $with_plain:expr
+    ) => {
+        impl$(<const $parameter: $kind>)? core::ops::$trait for $number {
+            type Output = Self;
+            fn $method(self, $b: Self) -> Self {
+                let $a = self;
+                $own
+            }
+        }
+
+        impl$(<const $parameter: $kind>)? core::ops::$trait<f64> for $number {
+            type Output = Self;
+            fn $method(self, $b: f64) -> Self {
+                let $a = self;
+                $with_plain
+            }
+        }
+
         impl$(<const $parameter: $kind>)? core::ops::$trait<$number> for f64 {
             type Output = $number;
             fn $method(self, other: $number) -> $number {

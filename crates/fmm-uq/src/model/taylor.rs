@@ -1,7 +1,5 @@
 //! Taylor number: a value with its expansion.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
 use fmm_model::Scalar;
 
 /// Powers (i, j) of the two directions, in the order of their coefficients.
@@ -63,6 +61,13 @@ impl Taylor {
         result
     }
 
+    /// xᵖ of this `value`, with the powers p − 1, p − 2 and p − 3.
+    fn power(self, value: f64, p: f64, below: [f64; 3]) -> Self {
+        let [first, second, third] = below;
+        let slopes = [p, p * (p - 1.0) / 2.0, p * (p - 1.0) * (p - 2.0) / 6.0];
+        self.compose(value, [term(first, slopes[0]), term(second, slopes[1]), term(third, slopes[2])])
+    }
+
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Self { coefficients: self.coefficients.map(f) }
     }
@@ -73,6 +78,35 @@ impl Taylor {
             *a = f(*a, b);
         }
         Self { coefficients }
+    }
+
+    /// The same about another value.
+    fn raised(mut self, by: f64) -> Self {
+        self.coefficients[0] += by;
+        self
+    }
+
+    fn times(self, other: Self) -> Self {
+        let mut coefficients = [0.0; 10];
+        for (a, b, to) in PRODUCTS {
+            coefficients[to] += self.coefficients[a] * other.coefficients[b];
+        }
+        Self { coefficients }
+    }
+
+    fn over(self, other: Self) -> Self {
+        // From q · other = self, order by order: each coefficient of q follows from those before it.
+        let mut quotient = self;
+        for to in 0..10 {
+            let mut rest = self.coefficients[to];
+            for (a, b, at) in PRODUCTS {
+                if at == to && b != 0 {
+                    rest -= quotient.coefficients[a] * other.coefficients[b];
+                }
+            }
+            quotient.coefficients[to] = rest / other.coefficients[0];
+        }
+        quotient
     }
 }
 
@@ -108,87 +142,14 @@ impl From<f64> for Taylor {
     }
 }
 
-impl Neg for Taylor {
-    type Output = Self;
-    fn neg(self) -> Self {
-        self.map(|c| -c)
-    }
+fmm_model::scalar_operators! {
+    Taylor;
+    -a => a.map(|c| -c);
+    a + b => a.zip(b, |a, b| a + b), a.raised(b);
+    a - b => a.zip(b, |a, b| a - b), a.raised(-b);
+    a * b => a.times(b), a.map(|c| c * b);
+    a / b => a.over(b), a.map(|c| c / b);
 }
-
-impl Add for Taylor {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-}
-
-impl Sub for Taylor {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl Mul for Taylor {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let mut coefficients = [0.0; 10];
-        for (a, b, to) in PRODUCTS {
-            coefficients[to] += self.coefficients[a] * other.coefficients[b];
-        }
-        Self { coefficients }
-    }
-}
-
-impl Div for Taylor {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        // From q · other = self, order by order: each coefficient of q follows from those before it.
-        let mut quotient = self;
-        for to in 0..10 {
-            let mut rest = self.coefficients[to];
-            for (a, b, at) in PRODUCTS {
-                if at == to && b != 0 {
-                    rest -= quotient.coefficients[a] * other.coefficients[b];
-                }
-            }
-            quotient.coefficients[to] = rest / other.coefficients[0];
-        }
-        quotient
-    }
-}
-
-impl Add<f64> for Taylor {
-    type Output = Self;
-    fn add(mut self, other: f64) -> Self {
-        self.coefficients[0] += other;
-        self
-    }
-}
-
-impl Sub<f64> for Taylor {
-    type Output = Self;
-    fn sub(mut self, other: f64) -> Self {
-        self.coefficients[0] -= other;
-        self
-    }
-}
-
-impl Mul<f64> for Taylor {
-    type Output = Self;
-    fn mul(self, other: f64) -> Self {
-        self.map(|c| c * other)
-    }
-}
-
-impl Div<f64> for Taylor {
-    type Output = Self;
-    fn div(self, other: f64) -> Self {
-        self.map(|c| c / other)
-    }
-}
-
-fmm_model::scalar_operators!(Taylor);
 
 impl Scalar for Taylor {
     const DIRECTIONS: usize = 2;
@@ -240,24 +201,16 @@ impl Scalar for Taylor {
         self.compose(t, [slope, -t * slope, slope * (3.0 * t * t - 1.0) / 3.0])
     }
     fn powi(self, exponent: i32) -> Self {
-        let (x, p) = (self.value(), f64::from(exponent));
         // Down from the exponent, of which none is left where the factor is zero.
-        let power = |less: i32| x.powi(exponent.saturating_sub(less));
-        let series =
-            [term(power(1), p), term(power(2), p * (p - 1.0) / 2.0), term(power(3), p * (p - 1.0) * (p - 2.0) / 6.0)];
-        self.compose(x.powi(exponent), series)
+        let power = |less: i32| self.value().powi(exponent.saturating_sub(less));
+        self.power(power(0), f64::from(exponent), [power(1), power(2), power(3)])
     }
     fn powf(self, exponent: impl Into<Self>) -> Self {
         let exponent: Self = exponent.into();
         let (x, p) = (self.value(), exponent.value());
         let value = x.powf(p);
         if exponent.coefficients[1..].iter().all(|&c| c == 0.0) {
-            let series = [
-                term(x.powf(p - 1.0), p),
-                term(x.powf(p - 2.0), p * (p - 1.0) / 2.0),
-                term(x.powf(p - 3.0), p * (p - 1.0) * (p - 2.0) / 6.0),
-            ];
-            return self.compose(value, series);
+            return self.power(value, p, [x.powf(p - 1.0), x.powf(p - 2.0), x.powf(p - 3.0)]);
         }
         let mut power = (self.ln() * exponent).exp();
         power.coefficients[0] = value;
