@@ -100,15 +100,12 @@ impl Failures {
     }
 
     fn count_kind(&mut self, kind: &FailureKind, count: u64) {
-        let full = self.counts.len() >= KINDS;
-        if let Some((_, known)) = self.counts.iter_mut().find(|(known, _)| known == kind) {
-            *known += count;
-        } else if !full {
-            self.counts.push((kind.clone(), count));
-        } else if let Some((_, others)) = self.counts.iter_mut().find(|(known, _)| *known == FailureKind::Other) {
-            *others += count;
-        } else {
-            self.counts.push((FailureKind::Other, count));
+        let place = |kind: &FailureKind| self.counts.iter().position(|(known, _)| known == kind);
+        let is_lumped = place(kind).is_none() && self.counts.len() >= KINDS;
+        let kind = if is_lumped { &FailureKind::Other } else { kind };
+        match place(kind) {
+            Some(known) => self.counts[known].1 += count,
+            None => self.counts.push((kind.clone(), count)),
         }
     }
 }

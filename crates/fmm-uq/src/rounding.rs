@@ -1,7 +1,7 @@
 //! Numbers as they are stated: to the digits that their uncertainty leaves them.
 
 /// Significant digits of a stated uncertainty (JCGM 100:2008, 7.2.6: at most two).
-const STATED: u8 = 2;
+const STATED: u32 = 2;
 
 /// The decimal place that a result is rounded to: that of the second digit of its standard uncertainty.
 ///
@@ -15,13 +15,8 @@ pub(crate) struct Rounding {
 impl Rounding {
     /// The place for a standard uncertainty.
     pub(crate) fn of(standard_uncertainty: f64) -> Self {
-        if !(standard_uncertainty > 0.0 && standard_uncertainty.is_finite()) {
-            return Self { last: None };
-        }
-        // The exponent is that of the rounded number: 0.996 is 1.0.
-        let text = format!("{standard_uncertainty:.*e}", usize::from(STATED) - 1);
-        let exponent = text.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
-        Self { last: exponent.map(|exponent| exponent + 1 - i32::from(STATED)) }
+        let is_stated = standard_uncertainty > 0.0 && standard_uncertainty.is_finite();
+        Self { last: if is_stated { last_place(standard_uncertainty, STATED) } else { None } }
     }
 
     /// A number rounded to the place, with zeros up to it.
@@ -45,6 +40,21 @@ impl Rounding {
             text
         }
     }
+}
+
+/// Exponent of ten of the last of so many significant digits of a finite number.
+pub(crate) fn last_place(value: f64, digits: u32) -> Option<i32> {
+    // The exponent is that of the rounded number: 0.996 to two digits is 1.0.
+    let text = format!("{value:.*e}", digits as usize - 1);
+    let exponent: i32 = text.split_once('e')?.1.parse().ok()?;
+    Some(exponent + 1 - digits.cast_signed())
+}
+
+/// "area = 2.00 m², u = 0.28 m²".
+pub(crate) fn with_uncertainty(name: &str, estimate: f64, standard_uncertainty: f64, unit: &str) -> String {
+    let (rounding, unit) = (Rounding::of(standard_uncertainty), suffix(unit));
+    let [y, u] = [estimate, standard_uncertainty].map(|value| rounding.number(value));
+    format!("{name} = {y}{unit}, u = {u}{unit}")
 }
 
 /// `value` to `digits` significant digits without trailing zeros, with an exponent where it would be long.

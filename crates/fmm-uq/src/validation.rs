@@ -3,6 +3,7 @@
 use fmm_model::Interval;
 
 use crate::error::UncertaintyError;
+use crate::rounding::last_place;
 
 pub(crate) fn valid_digits(digits: u32) -> Result<u32, UncertaintyError> {
     if (1..=15).contains(&digits) {
@@ -50,12 +51,8 @@ impl Validation {
             let (option, must_be) = ("uncertainty to take a tolerance from", "positive and finite");
             return Err(UncertaintyError::out_of_range(option, standard_uncertainty, must_be));
         }
-        // The exponent is that of the rounded number: 9.96 to two digits is 10, not 9.9.
-        let decimals = digits as usize - 1;
-        let rounded = format!("{standard_uncertainty:.decimals$e}");
-        let exponent = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
-        let text = format!("5e{}", exponent - digits.cast_signed());
-        Ok(text.parse().unwrap_or(f64::MIN_POSITIVE))
+        let last = last_place(standard_uncertainty, digits);
+        Ok(last.and_then(|last| format!("5e{}", last - 1).parse().ok()).unwrap_or(f64::MIN_POSITIVE))
     }
 
     /// True if the interval of the GUM may be used.

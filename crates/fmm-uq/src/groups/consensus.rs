@@ -195,9 +195,9 @@ impl Consensus {
 
     /// Shares of the weights with `variance` between the results.
     fn shares(&self, variance: f64) -> Vec<f64> {
-        let weight = |result: &Estimated| (result.uncertainty * result.uncertainty + variance).recip();
-        let all: f64 = self.results.iter().map(weight).sum();
-        self.results.iter().map(|result| weight(result) / all).collect()
+        let weights = self.results.iter().map(|result| weight(result, variance));
+        let all: f64 = weights.clone().sum();
+        weights.map(|weight| weight / all).collect()
     }
 
     /// τ, standard deviation between the results beyond their uncertainties (their unit).
@@ -315,9 +315,14 @@ impl Consensus {
     }
 }
 
+/// w with `variance` between the results.
+fn weight(result: &Estimated, variance: f64) -> f64 {
+    (result.uncertainty * result.uncertainty + variance).recip()
+}
+
 /// Weighted mean, Σ w (x − mean)² and Σ w with `variance` between the results.
 fn weighted(results: &[Estimated], variance: f64) -> (f64, f64, f64) {
-    let weight = |result: &Estimated| (result.uncertainty * result.uncertainty + variance).recip();
+    let weight = |result: &Estimated| weight(result, variance);
     let weights: f64 = results.iter().map(weight).sum();
     let from =
         |origin: f64| results.iter().map(|result| weight(result) * (result.value - origin)).sum::<f64>() / weights;
@@ -330,27 +335,16 @@ fn weighted(results: &[Estimated], variance: f64) -> (f64, f64, f64) {
     (near + mean, squares, weights)
 }
 
-/// Σ w − Σ w²/Σ w = Σ w_i (Σ_{j≠i} w_j/Σ w), which is not lost where one weight is nearly all of them.
+/// Σ w − Σ w²/Σ w = 2 Σ w_i (Σ_{j<i} w_j/Σ w), which is not lost where one weight is nearly all of them.
 fn weight_between(results: &[Estimated]) -> f64 {
-    let weights = || results.iter().map(|result| result.uncertainty.powi(-2));
-    let all: f64 = weights().sum();
-    // Sums of the weights behind each, from the last on.
-    let mut behind: Vec<f64> = weights()
-        .rev()
-        .scan(0.0, |sum, weight| {
-            let before = *sum;
-            *sum += weight;
-            Some(before)
-        })
-        .collect();
-    behind.reverse();
-    let mut ahead = 0.0;
-    let share = |(weight, behind): (f64, f64)| {
-        let others = ahead + behind;
-        ahead += weight;
-        weight * (others / all)
-    };
-    weights().zip(behind).map(share).sum()
+    let weights = || results.iter().map(|result| weight(result, 0.0));
+    let (all, mut before): (f64, f64) = (weights().sum(), 0.0);
+    let pairs = weights().map(|weight| {
+        let pair = weight * (before / all);
+        before += weight;
+        pair
+    });
+    2.0 * pairs.sum::<f64>()
 }
 
 /// τ² with Q(τ²) = `freedom`; 0 if Q(0) is less already. Q falls and is convex, so that Newton's steps from 0 do not
@@ -361,7 +355,7 @@ fn mandel_paule(results: &[Estimated], freedom: f64) -> f64 {
         let (mean, squares, weights) = weighted(results, variance);
         // −dQ/dτ² = Σ w² (x − μ̂)², by shares of the weights, of which the squares may be beyond f64.
         let share = |result: &Estimated| {
-            let weight = (result.uncertainty * result.uncertainty + variance).recip();
+            let weight = weight(result, variance);
             weight / weights * (weight * (result.value - mean).powi(2))
         };
         let step = (squares - freedom) / results.iter().map(share).sum::<f64>() / weights;

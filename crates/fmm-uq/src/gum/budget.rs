@@ -129,17 +129,15 @@ impl Budget {
             let (found, needed) = (sensitivities.len(), inputs.as_slice().len());
             return Err(UncertaintyError::invalid(format!("{needed} inputs have {needed} sensitivities, not {found}")));
         }
-        let (name, unit) = ("result".to_owned(), String::new());
-        let (second_order, linearisation) = (None, Linearisation::Unchecked);
         let mut budget = Self {
             inputs,
             estimate,
             sensitivities,
             standard_uncertainty: 0.0,
-            second_order,
-            linearisation,
-            name,
-            unit,
+            second_order: None,
+            linearisation: Linearisation::Unchecked,
+            name: "result".to_owned(),
+            unit: String::new(),
         };
         for (i, &sensitivity) in budget.sensitivities.iter().enumerate() {
             if !(sensitivity.is_finite() && budget.signed(i).is_finite()) {

@@ -137,10 +137,7 @@ where
     }
 
     fn outputs_at(&self, x: &[f64]) -> Option<Vec<f64>> {
-        let x: Vec<Taylor> = x.iter().map(|&value| Taylor::from(value)).collect();
-        let mut outputs = Vec::new();
-        (self.model)(&x).append_to(&mut outputs).ok()?;
-        Some(outputs.iter().map(|y| y.value()).collect())
+        Taylor::at_values(&self.model)(x).ok()
     }
 
     fn expand(&self, first: &[f64], second: Option<&[f64]>) -> Result<Vec<Expansion>, UncertaintyError> {

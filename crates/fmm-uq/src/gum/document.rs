@@ -47,11 +47,6 @@ struct Correlation<'a> {
     coefficient: f64,
 }
 
-/// A number for a document, which has no infinite ones.
-fn finite(value: f64) -> Option<f64> {
-    Some(value).filter(|value| value.is_finite())
-}
-
 impl<'a> Row<'a> {
     fn new(budget: &Budget, row: Contribution<'a>, is_correlated: bool) -> Self {
         let input = row.input;
@@ -63,7 +58,7 @@ impl<'a> Row<'a> {
             evaluation: input.evaluation().to_string(),
             divisor: input.distribution().divisor(),
             standard_uncertainty: input.standard_uncertainty(),
-            degrees_of_freedom: finite(input.degrees_of_freedom()),
+            degrees_of_freedom: Some(input.degrees_of_freedom()).filter(|nu| nu.is_finite()),
             sensitivity: row.sensitivity,
             sensitivity_unit: budget.unit_of_sensitivity(input.unit()),
             contribution: row.uncertainty,
@@ -97,7 +92,7 @@ impl Serialize for Budget {
             unit: self.unit(),
             estimate: self.estimate(),
             standard_uncertainty: self.standard_uncertainty(),
-            effective_degrees_of_freedom: self.effective_degrees_of_freedom().and_then(finite),
+            effective_degrees_of_freedom: self.effective_degrees_of_freedom().filter(|nu| nu.is_finite()),
             contributions: self
                 .contributions()
                 .enumerate()

@@ -1,6 +1,5 @@
 //! Excursion of a model: its values as far from the estimates as the inputs may be.
 
-use crate::distributions::Distribution;
 use crate::gum::derivatives::{Derivatives, Expansion};
 use crate::inputs::{Input, Inputs};
 
@@ -124,17 +123,12 @@ impl<'a, M: Derivatives> Excursion<'a, M> {
         let inputs = self.inputs.as_slice().iter().zip(direction);
         let place = |(input, step): (&Input, &f64)| {
             // A limit may be missed by a rounding.
-            let (low, high) = limits(input.distribution(), *step);
-            (input.value() + distance * step).max(low).min(high)
+            let (low, high) = input.distribution().limits();
+            if *step == 0.0 { input.value() } else { (input.value() + distance * step).max(low).min(high) }
         };
         let outputs = self.model.outputs_at(&inputs.map(place).collect::<Vec<_>>())?;
         (outputs.len() == self.values.len() && outputs.iter().all(|y| y.is_finite())).then_some(outputs)
     }
-}
-
-/// The limits of an input that is moved by a step.
-fn limits(distribution: &Distribution, step: f64) -> (f64, f64) {
-    if step == 0.0 { (f64::NEG_INFINITY, f64::INFINITY) } else { distribution.limits() }
 }
 
 /// Part of a difference that rounding cannot have made.

@@ -45,15 +45,9 @@ impl Propagation {
 
     /// Correlation coefficient of two outputs (1); 0 if one of them has no uncertainty.
     pub fn correlation(&self, i: usize, j: usize) -> f64 {
-        match (self.budgets.get(i), self.budgets.get(j)) {
-            (Some(first), Some(second))
-                if first.standard_uncertainty() > 0.0 && second.standard_uncertainty() > 0.0 =>
-            {
-                let scaled = self.covariance(i, j) / first.standard_uncertainty();
-                (scaled / second.standard_uncertainty()).clamp(-1.0, 1.0)
-            }
-            _ => 0.0,
-        }
+        let u = |output: usize| self.budgets.get(output).map_or(0.0, Budget::standard_uncertainty);
+        let is_uncertain = u(i) > 0.0 && u(j) > 0.0;
+        if is_uncertain { (self.covariance(i, j) / u(i) / u(j)).clamp(-1.0, 1.0) } else { 0.0 }
     }
 
     /// The ellipsoid that holds the outputs with probability p, if they are normal or, where inputs have finite degrees

@@ -75,7 +75,8 @@ pub(crate) fn second_order(
         let (u, departure) = (budgets[k].standard_uncertainty(), departures[k]);
         let terms = sums.finish(excursion.rounding(k)).filter(|_| asked && departure.is_tolerable(u, TOLERATED));
         let slopes = (0..inputs.as_slice().len()).any(|i| budgets[k].signed(i) != 0.0);
-        let still = asked && departure.moved == 0.0 && terms.is_some_and(|terms| terms.size() <= excursion.rounding(k));
+        let size = |terms: SecondOrder| terms.correction.abs().max(terms.standard_uncertainty);
+        let still = asked && departure.moved == 0.0 && terms.is_some_and(|terms| size(terms) <= excursion.rounding(k));
         Curvature { terms, cancels: u == 0.0 && slopes && still }
     };
     Ok(sums.into_iter().enumerate().map(finish).collect())
@@ -88,13 +89,6 @@ fn directions(inputs: &Inputs) -> Vec<Vec<f64>> {
     let root = inputs.correlation_root(&all);
     let column = |m: usize| -> Vec<f64> { all.iter().map(|&i| uncertainties[i] * root[i][m]).collect() };
     all.iter().map(|&m| column(m)).filter(|column| column.iter().any(|&step| step != 0.0)).collect()
-}
-
-impl SecondOrder {
-    /// The larger of both (unit of the result).
-    fn size(self) -> f64 {
-        self.correction.abs().max(self.standard_uncertainty)
-    }
 }
 
 #[derive(Clone)]

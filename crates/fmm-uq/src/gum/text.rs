@@ -5,7 +5,7 @@ use std::fmt;
 use crate::error::UncertaintyError;
 use crate::gum::budget::{Budget, Contribution};
 use crate::gum::second_order::Linearisation;
-use crate::rounding::{Rounding, degrees, percent, significant, suffix};
+use crate::rounding::{Rounding, degrees, percent, significant, suffix, with_uncertainty};
 
 /// Significant digits of uncertainties and shares, and of a value down to its uncertainty.
 const DIGITS: i32 = 3;
@@ -62,12 +62,11 @@ pub struct Statement {
 
 impl fmt::Display for Statement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (rounding, unit) = (Rounding::of(self.standard_uncertainty), suffix(&self.unit));
-        let [y, u, expanded] =
-            [self.estimate, self.standard_uncertainty, self.expanded_uncertainty].map(|value| rounding.number(value));
+        let expanded = Rounding::of(self.standard_uncertainty).number(self.expanded_uncertainty);
         let nu = degrees(self.effective_degrees_of_freedom.unwrap_or(f64::INFINITY));
         let (k, level) = (self.coverage_factor, percent(self.level));
-        write!(f, "{} = {y}{unit}, u = {u}{unit}\nU = {expanded}{unit} (k = {k:.2}, {level}, ν_eff = {nu})", self.name)
+        writeln!(f, "{}", with_uncertainty(&self.name, self.estimate, self.standard_uncertainty, &self.unit))?;
+        write!(f, "U = {expanded}{} (k = {k:.2}, {level}, ν_eff = {nu})", suffix(&self.unit))
     }
 }
 
@@ -81,15 +80,6 @@ impl fmt::Display for Budget {
     }
 }
 
-/// Budget as text with the expanded uncertainty for a coverage probability.
-struct AtLevel<'a>(&'a Budget, f64);
-
-impl fmt::Display for AtLevel<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.write(f, self.1)
-    }
-}
-
 impl Budget {
     /// The printed budget with the expanded uncertainty for a coverage probability other than 95 %; without U unless
     /// 0 < level < 1.
@@ -99,14 +89,17 @@ impl Budget {
     ///
     /// let inputs = Inputs::new([Input::new("mass", 2.0, 0.01, "kg")?])?;
     /// let budget = propagate(&inputs, |x| x[0] * 9.81)?.named("weight", "N");
-    /// assert!(budget.at_level(0.99).to_string().ends_with("U = 0.253 N (k = 2.58, 99 %, ν_eff = ∞)\n"));
+    /// assert!(budget.at_level(0.99).ends_with("U = 0.253 N (k = 2.58, 99 %, ν_eff = ∞)\n"));
     /// # Ok::<(), fmm_uq::UncertaintyError>(())
     /// ```
-    pub fn at_level(&self, level: f64) -> impl fmt::Display + '_ {
-        AtLevel(self, level)
+    pub fn at_level(&self, level: f64) -> String {
+        let mut text = String::new();
+        // A string takes all that is written to it.
+        let _ = self.write(&mut text, level);
+        text
     }
 
-    fn write(&self, f: &mut fmt::Formatter<'_>, level: f64) -> fmt::Result {
+    fn write(&self, f: &mut impl fmt::Write, level: f64) -> fmt::Result {
         self.table(f)?;
         let inputs = self.inputs().as_slice();
         for (i, j) in self.inputs().correlated_pairs() {
@@ -118,31 +111,26 @@ impl Budget {
         if let Ok(statement) = self.statement(level) {
             writeln!(f, "{statement}")?;
         } else {
-            let rounding = Rounding::of(self.standard_uncertainty());
-            let [y, u] = [self.estimate(), self.standard_uncertainty()].map(|value| rounding.number(value));
-            writeln!(f, "{} = {y}{unit}, u = {u}{unit}\nno U: ν_eff undefined", self.name())?;
+            let stated = with_uncertainty(self.name(), self.estimate(), self.standard_uncertainty(), self.unit());
+            writeln!(f, "{stated}\nno U: ν_eff undefined")?;
         }
         let digits = |value| significant(value, DIGITS);
-        match self.linearisation() {
-            Linearisation::Adequate | Linearisation::Unchecked => Ok(()),
-            Linearisation::ZeroUncertainty => writeln!(
-                f,
-                "warning: u is zero although inputs are uncertain; the linear approximation cannot see their effect"
-            ),
+        let warning = match self.linearisation() {
+            Linearisation::Adequate | Linearisation::Unchecked => return Ok(()),
+            Linearisation::ZeroUncertainty => {
+                "u is zero although inputs are uncertain; the linear approximation cannot see their effect".to_owned()
+            }
             Linearisation::UncertaintyDiffers(terms) => {
-                writeln!(
-                    f,
-                    "warning: the model is curved; to second order u = {}{unit}",
-                    digits(terms.standard_uncertainty)
-                )
+                format!("the model is curved; to second order u = {}{unit}", digits(terms.standard_uncertainty))
             }
             Linearisation::EstimateShifts(terms) => {
-                writeln!(f, "warning: the model is curved and moves the estimate by {}{unit}", digits(terms.correction))
+                format!("the model is curved and moves the estimate by {}{unit}", digits(terms.correction))
             }
             Linearisation::NotExpandable => {
-                writeln!(f, "warning: within the uncertainties of its inputs the model departs from its derivatives")
+                "within the uncertainties of its inputs the model departs from its derivatives".to_owned()
             }
-        }
+        };
+        writeln!(f, "warning: {warning}")
     }
 
     /// The result with its expanded uncertainty for a coverage probability.
@@ -183,7 +171,7 @@ impl Budget {
         }
     }
 
-    fn table(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn table(&self, f: &mut impl fmt::Write) -> fmt::Result {
         let rows = self.contributions().map(|row| self.cells(&row));
         let lines: Vec<[String; 12]> = std::iter::once(HEADER.map(str::to_owned)).chain(rows).collect();
         let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);

@@ -1,14 +1,9 @@
 //! Adaptive number of trials.
 
 use crate::error::UncertaintyError;
-use crate::moments::Moments;
 use crate::monte_carlo::block::BLOCK_TRIALS;
-use crate::monte_carlo::output_sample::symmetric;
-use crate::monte_carlo::settling::Settling;
 use crate::validation::{Validation, valid_digits};
 
-/// Sequences of trials before the first decision: with fewer, chance may make them agree.
-const FEWEST_SEQUENCES: usize = 10;
 /// Share of δ that a Monte Carlo may be wrong by if it is to validate another result (JCGM 101:2008, 8.2).
 const VALIDATION: f64 = 0.2;
 
@@ -43,9 +38,9 @@ pub enum IntervalKind {
 pub struct Adaptive {
     target: Target,
     share: f64,
-    level: f64,
-    kind: IntervalKind,
-    most_trials: u64,
+    pub(super) level: f64,
+    pub(super) kind: IntervalKind,
+    pub(super) most_trials: u64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,17 +100,8 @@ impl Adaptive {
         self
     }
 
-    pub(crate) const fn most_trials(&self) -> u64 {
-        self.most_trials
-    }
-
     pub(crate) fn trials_of_sequence(&self) -> u64 {
         self.blocks_of_sequence().saturating_mul(BLOCK_TRIALS as u64)
-    }
-
-    /// Trials before the first decision.
-    pub(crate) fn fewest_trials(&self) -> u64 {
-        self.trials_of_sequence().saturating_mul(FEWEST_SEQUENCES as u64)
     }
 
     /// Tolerance of all figures of an output with this uncertainty (unit of the output).
@@ -131,123 +117,5 @@ impl Adaptive {
     pub(crate) fn blocks_of_sequence(&self) -> u64 {
         let trials = (100.0 / (1.0 - self.level)).ceil().max(1e4);
         (trials / BLOCK_TRIALS as f64).ceil() as u64
-    }
-}
-
-/// Figures of the sequences so far.
-#[derive(Debug, Clone)]
-pub(crate) struct Stability {
-    rule: Adaptive,
-    /// Number of values after all sequences so far.
-    values: usize,
-    outputs: Vec<Figures>,
-}
-
-/// The figures of one output.
-#[derive(Debug, Clone)]
-struct Figures {
-    /// Estimate, uncertainty and, of a symmetric interval, both ends by sequence.
-    averaged: Vec<Vec<f64>>,
-    /// Ends of a shortest interval.
-    settling: Option<Settling>,
-    /// Number, mean and sum of squares of all trials so far.
-    pooled: (f64, f64, f64),
-}
-
-impl Figures {
-    fn new(rule: &Adaptive) -> Self {
-        let (averaged, settling) = match rule.kind {
-            IntervalKind::Symmetric => (4, None),
-            IntervalKind::Shortest => (2, Some(Settling::new(rule.level))),
-        };
-        Self { averaged: vec![Vec::new(); averaged], settling, pooled: (0.0, 0.0, 0.0) }
-    }
-
-    /// Takes in the next sequence: all values of the output, of which those from `start` on are new.
-    fn add(&mut self, values: &[f64], start: usize, level: f64) -> Result<(), UncertaintyError> {
-        let sequence = &values[start..];
-        let moments = Moments::of_values(sequence);
-        let mut figures = vec![moments.mean(), moments.standard_deviation().unwrap_or(0.0)];
-        if let Some(settling) = &mut self.settling {
-            settling.add(values)?;
-        } else {
-            let interval = symmetric(sequence, level)?;
-            figures.extend([interval.low, interval.high]);
-        }
-        for (list, figure) in self.averaged.iter_mut().zip(figures) {
-            list.push(figure);
-        }
-        let (n, mean, squares) = self.pooled;
-        let (more, difference) = (moments.count() as f64, moments.mean() - mean);
-        let all = n + more;
-        self.pooled = (
-            all,
-            mean + difference * (more / all),
-            squares + moments.sum_of_squares() + difference * difference * (n * (more / all)),
-        );
-        Ok(())
-    }
-
-    /// u(y) of all trials so far (unit of the output).
-    fn uncertainty(&self) -> f64 {
-        let (n, _, squares) = self.pooled;
-        (squares / (n - 1.0)).sqrt()
-    }
-}
-
-impl Stability {
-    pub(crate) const fn new(rule: Adaptive) -> Self {
-        Self { rule, values: 0, outputs: Vec::new() }
-    }
-
-    /// Takes in the next sequence, given all values so far by output, and says whether it is the last one.
-    pub(crate) fn add(&mut self, columns: &[Vec<f64>]) -> Result<bool, UncertaintyError> {
-        let values = columns.first().map_or(0, Vec::len);
-        if values == self.values {
-            return Err(UncertaintyError::no_success());
-        }
-        self.outputs.resize_with(columns.len(), || Figures::new(&self.rule));
-        for (column, figures) in columns.iter().zip(&mut self.outputs) {
-            figures.add(column, self.values, self.rule.level)?;
-        }
-        self.values = values;
-        self.decide()
-    }
-
-    fn decide(&self) -> Result<bool, UncertaintyError> {
-        let count = self.outputs.first().map_or(0, |figures| figures.averaged[0].len());
-        Ok(count >= FEWEST_SEQUENCES && self.needed()? <= count as f64 && self.settled()?)
-    }
-
-    /// True if the ends of all shortest intervals are stable.
-    fn settled(&self) -> Result<bool, UncertaintyError> {
-        for figures in &self.outputs {
-            let u = figures.uncertainty();
-            if let Some(settling) = figures.settling.as_ref().filter(|_| u > 0.0)
-                && !(settling.doubt() <= self.rule.tolerance(u)?)
-            {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-
-    /// Sequences after which 2 s_z ≤ δ for the spread between sequences so far: whole, and the most for any averaged
-    /// figure of any output.
-    fn needed(&self) -> Result<f64, UncertaintyError> {
-        let mut most = 0.0_f64;
-        for figures in &self.outputs {
-            let u = figures.uncertainty();
-            if u == 0.0 {
-                continue;
-            }
-            let tolerance = self.rule.tolerance(u)?;
-            for figure in &figures.averaged {
-                let spread = Moments::of_values(figure).standard_deviation().unwrap_or(f64::INFINITY);
-                most = most.max((2.0 * spread / tolerance).powi(2));
-            }
-        }
-        // A shade more than whole is whole: rounding must not cost a sequence.
-        Ok((most * (1.0 - 1e-12)).ceil())
     }
 }

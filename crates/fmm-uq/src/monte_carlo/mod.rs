@@ -11,6 +11,7 @@ mod region;
 mod run;
 mod sampler;
 mod sensitivity;
+mod sequences;
 mod settling;
 mod statement;
 
@@ -113,6 +114,14 @@ impl<'a> MonteCarlo<'a> {
     }
 
     /// Rule by which an adaptive run stops.
+    /// Number of trials, where it is fixed.
+    pub(crate) const fn planned(&self) -> Option<u64> {
+        match self.plan {
+            Plan::Fixed(trials) => Some(trials),
+            Plan::Adaptive(_) => None,
+        }
+    }
+
     pub(crate) const fn rule(&self) -> Option<Adaptive> {
         match self.plan {
             Plan::Adaptive(rule) => Some(rule),
@@ -158,7 +167,7 @@ impl<'a> MonteCarlo<'a> {
     /// # Ok::<(), fmm_uq::UncertaintyError>(())
     /// ```
     pub fn shard(&self, index: u64, parts: u64) -> Range<u64> {
-        let Plan::Fixed(trials) = self.plan else { return 0..0 };
+        let Some(trials) = self.planned() else { return 0..0 };
         let blocks = u128::from(trials.div_ceil(BLOCK_TRIALS as u64));
         let parts = u128::from(parts.max(1));
         let start = |index: u64| (blocks * u128::from(index).min(parts) / parts) as u64;

@@ -38,15 +38,13 @@ impl OutputSample {
         failures: Failures,
         heavy_tail: Option<HeavyTail>,
     ) -> Result<Self, UncertaintyError> {
-        let mut moments = Vec::with_capacity(columns.len());
-        for column in &columns {
-            let overflow =
-                || UncertaintyError::uncertainty_out_of_range("the result", f64::INFINITY, "(unit of the result)");
-            if column.is_empty() {
-                return Err(UncertaintyError::no_success());
-            }
-            moments.push(Moments::of_values(column).if_finite().ok_or_else(overflow)?);
+        if columns.first().is_none_or(Vec::is_empty) {
+            return Err(UncertaintyError::no_success());
         }
+        let overflow =
+            || UncertaintyError::uncertainty_out_of_range("the result", f64::INFINITY, "(unit of the result)");
+        let moments = columns.iter().map(|column| Moments::of_values(column).if_finite().ok_or_else(overflow));
+        let moments = moments.collect::<Result<_, _>>()?;
         Ok(Self { columns, moments, trials, failures, heavy_tail })
     }
 

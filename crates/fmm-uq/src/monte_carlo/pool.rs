@@ -3,38 +3,23 @@
 use crate::error::UncertaintyError;
 use crate::failure::Failures;
 use crate::monte_carlo::block::Block;
-use crate::monte_carlo::output_sample::OutputSample;
-use crate::monte_carlo::refusal::HeavyTail;
 
 /// Values of an output for which memory is reserved at once.
 const ROOM: u64 = 1 << 27;
 
 /// The values of blocks that came so far, in their order: one column for each output.
 pub(crate) struct Pool {
-    columns: Vec<Vec<f64>>,
+    pub(super) columns: Vec<Vec<f64>>,
     expected: u64,
-    trials: u64,
-    failures: Failures,
+    /// Number of trials, failed ones included.
+    pub(super) trials: u64,
+    pub(super) failures: Failures,
 }
 
 impl Pool {
     /// An empty pool with room for the `expected` number of trials.
     pub(crate) fn new(expected: u64) -> Self {
         Self { columns: Vec::new(), expected, trials: 0, failures: Failures::default() }
-    }
-
-    /// Number of trials, failed ones included.
-    pub(crate) const fn trials(&self) -> u64 {
-        self.trials
-    }
-
-    /// The values by output.
-    pub(crate) fn columns(&self) -> &[Vec<f64>] {
-        &self.columns
-    }
-
-    pub(crate) const fn failures(&self) -> &Failures {
-        &self.failures
     }
 
     /// Appends blocks.
@@ -65,13 +50,5 @@ impl Pool {
             }
         }
         Ok(())
-    }
-
-    /// The sample of all of them.
-    pub(crate) fn close(self, heavy_tail: Option<HeavyTail>) -> Result<OutputSample, UncertaintyError> {
-        if self.columns.is_empty() {
-            return Err(UncertaintyError::no_success());
-        }
-        OutputSample::new(self.columns, self.trials, self.failures, heavy_tail)
     }
 }

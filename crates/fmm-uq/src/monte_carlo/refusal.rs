@@ -3,10 +3,11 @@
 use crate::error::UncertaintyError;
 use crate::failure::Failures;
 use crate::inputs::{Input, Inputs};
+use crate::monte_carlo::block::BLOCK_TRIALS;
 
 /// The share of trials that may fail, in [0, 1); 0 unless set.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct AllowedFailures(f64);
+pub(crate) struct AllowedFailures(pub(crate) f64);
 
 impl AllowedFailures {
     pub(crate) fn new(share: f64) -> Result<Self, UncertaintyError> {
@@ -16,11 +17,6 @@ impl AllowedFailures {
             let (option, must_be) = ("allowed share of failed trials", "in [0, 1)");
             Err(UncertaintyError::out_of_range(option, share, must_be))
         }
-    }
-
-    /// The share.
-    pub(crate) const fn share(self) -> f64 {
-        self.0
     }
 
     /// True if no trial may fail.
@@ -33,12 +29,19 @@ impl AllowedFailures {
         failed as f64 <= self.0 * trials as f64
     }
 
-    /// Refuses more failures than these, with the first of them.
+    /// Refuses more failures than these, with the first of them. Where none may fail, the trials end with it: how many
+    /// of the others had been taken depends on the threads.
     pub(crate) fn check(self, failures: &Failures, trials: u64) -> Result<(), UncertaintyError> {
         match failures.first().first() {
             Some(first) if !self.allow(failures.count(), trials) => {
-                let (failed, first) = (failures.count(), Box::new(first.clone()));
-                Err(UncertaintyError::TooManyFailures { failed, trials, allowed: self.0, first })
+                let up_to_first = first.block * BLOCK_TRIALS as u64 + first.trial as u64 + 1;
+                let (failed, trials) = if self.is_none() { (1, up_to_first) } else { (failures.count(), trials) };
+                Err(UncertaintyError::TooManyFailures {
+                    failed,
+                    trials,
+                    allowed: self.0,
+                    first: Box::new(first.clone()),
+                })
             }
             _ => Ok(()),
         }

@@ -7,14 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use crate::error::UncertaintyError;
-use crate::failure::Failures;
 use crate::model::ModelOutput;
-use crate::monte_carlo::adaptive::{Adaptive, Stability};
+use crate::monte_carlo::adaptive::Adaptive;
 use crate::monte_carlo::block::{BLOCK_TRIALS, Block};
 use crate::monte_carlo::output_sample::OutputSample;
 use crate::monte_carlo::partial_run::PartialRun;
 use crate::monte_carlo::pool::Pool;
-use crate::monte_carlo::refusal::HeavyTail;
+use crate::monte_carlo::sequences::Sequences;
 use crate::monte_carlo::{MonteCarlo, Progress};
 
 /// Planned number of trials.
@@ -34,48 +33,6 @@ struct State {
     cancelled: AtomicBool,
     /// Index of the first block known to have failed where none may.
     failed_block: AtomicU64,
-}
-
-/// The sequences of an adaptive run, pooled until they are stable.
-struct Sequences {
-    rule: Adaptive,
-    stability: Stability,
-    pool: Pool,
-}
-
-impl Sequences {
-    fn new(rule: Adaptive, heavy_tail: Option<&HeavyTail>) -> Result<Self, UncertaintyError> {
-        HeavyTail::require_variance(heavy_tail)?;
-        let (allowed, needed) = (rule.most_trials(), rule.fewest_trials());
-        if allowed < needed {
-            let what = format!(
-                "the first decision takes {needed} trials, but at most {allowed} are allowed; lower the level, or \
-                 allow more"
-            );
-            return Err(UncertaintyError::TooFewTrials { what, trials: allowed });
-        }
-        Ok(Self { rule, stability: Stability::new(rule), pool: Pool::new(0) })
-    }
-
-    /// Takes in the blocks of the next sequence and says whether it is the last one.
-    fn add(&mut self, blocks: &[Block]) -> Result<bool, UncertaintyError> {
-        self.pool.add(blocks)?;
-        if self.stability.add(self.pool.columns())? {
-            return Ok(true);
-        }
-        if self.left() > 0 {
-            return Ok(false);
-        }
-        let trials = self.pool.trials();
-        let advice = "allow more, or ask for fewer digits";
-        let what = format!("the results are not stable to the tolerance after {trials} trials; {advice}");
-        Err(UncertaintyError::TooFewTrials { what, trials })
-    }
-
-    /// Sequences that may still be made.
-    fn left(&self) -> u64 {
-        self.rule.most_trials().saturating_sub(self.pool.trials()) / self.rule.trials_of_sequence()
-    }
 }
 
 impl MonteCarlo<'_> {
@@ -169,10 +126,7 @@ impl MonteCarlo<'_> {
         blocks: Range<u64>,
         model: impl Fn(&[f64]) -> R + Sync,
     ) -> Result<PartialRun, UncertaintyError> {
-        let end = match self.plan {
-            Plan::Fixed(trials) => blocks.end.min(blocks_of(trials)),
-            Plan::Adaptive(_) => blocks.end,
-        };
+        let end = self.planned().map_or(blocks.end, |trials| blocks.end.min(blocks_of(trials)));
         let mut all = Vec::new();
         self.run_groups(blocks.start..end, &model, |blocks| {
             all.extend(blocks);
@@ -212,10 +166,7 @@ impl MonteCarlo<'_> {
         range: Range<u64>,
         model: &(impl Fn(&[f64]) -> R + Sync),
     ) -> Result<Vec<Block>, UncertaintyError> {
-        let planned = match self.plan {
-            Plan::Fixed(trials) => Some(trials),
-            Plan::Adaptive(_) => None,
-        };
+        let planned = self.planned();
         let one = |index: u64| {
             // Where none may fail, blocks after a failed one are not worth running. Those before it are: the first
             // failure in order is the one reported, whichever thread met it first.
@@ -245,7 +196,7 @@ impl MonteCarlo<'_> {
         let blocks: Vec<Option<Block>> = range.map(one).collect();
         let blocks: Vec<Block> = blocks.into_iter().flatten().filter(|block| block.trials > 0).collect();
         if self.allowed_failures.is_none() {
-            blocks.iter().try_for_each(|block| self.refuse_failures(&block.failures, block.trials as u64))?;
+            blocks.iter().try_for_each(|block| self.allowed_failures.check(&block.failures, block.trials as u64))?;
         }
         if state.cancelled.load(Ordering::Relaxed) {
             return Err(UncertaintyError::Cancelled { trials: state.done.load(Ordering::Relaxed) });
@@ -255,27 +206,13 @@ impl MonteCarlo<'_> {
 
     fn trials_of(&self, block: u64) -> usize {
         let whole = BLOCK_TRIALS as u64;
-        match self.plan {
-            Plan::Fixed(trials) => trials.saturating_sub(block.saturating_mul(whole)).min(whole) as usize,
-            Plan::Adaptive(_) => BLOCK_TRIALS,
-        }
+        let left = self.planned().map_or(whole, |trials| trials.saturating_sub(block.saturating_mul(whole)));
+        left.min(whole) as usize
     }
 
     fn close(&self, pool: Pool) -> Result<OutputSample, UncertaintyError> {
-        self.refuse_failures(pool.failures(), pool.trials())?;
-        pool.close(self.heavy_tail.clone())
-    }
-
-    fn refuse_failures(&self, failures: &Failures, trials: u64) -> Result<(), UncertaintyError> {
-        let checked = self.allowed_failures.check(failures, trials);
-        match checked {
-            // Where the first failure ends the run, its neighbours' counts depend on the threads; its own does not.
-            Err(UncertaintyError::TooManyFailures { allowed, first, .. }) if self.allowed_failures.is_none() => {
-                let trials = first.block * BLOCK_TRIALS as u64 + first.trial as u64 + 1;
-                Err(UncertaintyError::TooManyFailures { failed: 1, trials, allowed, first })
-            }
-            checked => checked,
-        }
+        self.allowed_failures.check(&pool.failures, pool.trials)?;
+        OutputSample::new(pool.columns, pool.trials, pool.failures, self.heavy_tail.clone())
     }
 }
 

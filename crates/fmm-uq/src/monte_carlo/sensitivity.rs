@@ -88,7 +88,7 @@ impl VarianceShare {
         let rows: Vec<Rows> = (0..count).map(one).collect();
         let (failed, all) = (rows.iter().map(|r| r.failed).sum::<u64>(), blocks * BLOCK_TRIALS as u64);
         if !allowed_failures.allow(failed, all) {
-            let share = allowed_failures.share();
+            let AllowedFailures(share) = allowed_failures;
             let what = format!("the model failed in {failed} of {all} rows, more than the allowed share of {share}");
             return Err(UncertaintyError::model(what));
         }
@@ -107,14 +107,17 @@ impl VarianceShare {
         let variance = moments.sum_of_squares() / base.len() as f64;
         let names = inputs.as_slice().iter().enumerate();
         let share = |(i, input): (usize, &Input)| {
-            let of = |figure: fn(&Rows, usize, f64) -> Option<f64>| {
-                let figures: Vec<f64> = rows.iter().filter_map(|r| figure(r, i, moments.mean())).collect();
+            let of = |figure: &dyn Fn(&Rows) -> Option<f64>| {
+                let figures: Vec<f64> = rows.iter().filter_map(figure).collect();
                 let over = Moments::of_values(&figures);
                 let error = over.standard_deviation().unwrap_or(0.0) / (figures.len() as f64).sqrt();
                 (over.mean() / variance, error / variance)
             };
-            let (first_order, first_order_error) = of(Rows::first_order);
-            let (total, total_error) = of(Rows::total);
+            // About the mean, which changes no expectation and takes away most of the scatter.
+            let (first_order, first_order_error) =
+                of(&|rows| rows.average(i, |a, b, exchanged| (b - moments.mean()) * (exchanged - a)));
+            let (total, total_error) =
+                of(&|rows| rows.average(i, |a, _, exchanged| 0.5 * (a - exchanged) * (a - exchanged)));
             Self { input: input.name().to_owned(), first_order, first_order_error, total, total_error }
         };
         Ok(names.map(share).collect())
@@ -161,15 +164,7 @@ impl Rows {
         rows
     }
 
-    fn first_order(&self, i: usize, mean: f64) -> Option<f64> {
-        // About the mean, which changes no expectation and takes away most of the scatter.
-        self.average(i, |a, b, exchanged| (b - mean) * (exchanged - a))
-    }
-
-    fn total(&self, i: usize, _mean: f64) -> Option<f64> {
-        self.average(i, |a, _, exchanged| 0.5 * (a - exchanged) * (a - exchanged))
-    }
-
+    /// Mean of a function of the outputs at a point of either sample and with input `i` exchanged.
     fn average(&self, i: usize, of: impl Fn(f64, f64, f64) -> f64) -> Option<f64> {
         let triples = self.a.iter().zip(&self.b).zip(&self.exchanged[i]);
         let values: Vec<f64> = triples.map(|((&a, &b), &exchanged)| of(a, b, exchanged)).collect();

@@ -8,7 +8,7 @@ use crate::error::UncertaintyError;
 use crate::monte_carlo::MonteCarlo;
 use crate::monte_carlo::adaptive::IntervalKind;
 use crate::monte_carlo::output_sample::OutputSample;
-use crate::rounding::{Rounding, percent, significant, suffix};
+use crate::rounding::{Rounding, percent, significant, suffix, with_uncertainty};
 
 /// The result of a Monte Carlo for one of its outputs.
 ///
@@ -103,9 +103,8 @@ impl TrialStatement {
 impl fmt::Display for TrialStatement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (rounding, unit) = (Rounding::of(self.standard_uncertainty), suffix(&self.unit));
-        let [y, u, low, high] = [self.estimate, self.standard_uncertainty, self.interval.low, self.interval.high]
-            .map(|value| rounding.number(value));
-        writeln!(f, "{} = {y}{unit}, u = {u}{unit}", self.name)?;
+        let [low, high] = [self.interval.low, self.interval.high].map(|value| rounding.number(value));
+        writeln!(f, "{}", with_uncertainty(&self.name, self.estimate, self.standard_uncertainty, &self.unit))?;
         let kind = match self.kind {
             IntervalKind::Symmetric => "symmetric",
             IntervalKind::Shortest => "shortest",
