@@ -49,21 +49,13 @@ const ALIASES: &[(&str, &str, &[&str])] = &[
     ("smoothing_width", "ε", &["width", "eps"]),
 ];
 
-/// Values of parameters that are left out: a part that many contacts do not have, or the usual choice of an exponent.
-const DEFAULTS: &[(&str, &str, f64)] = &[
-    ("stribeck", "exponent", 2.0),
-    ("stribeck", "viscous", 0.0),
-    ("stribeck_lorentzian", "viscous", 0.0),
-    ("regularised_stribeck", "viscous", 0.0),
-    ("makkar_dixon", "viscous", 0.0),
-    ("makkar_dixon_shifted", "viscous", 0.0),
-    ("dahl", "exponent", 1.0),
-    ("lugre", "exponent", 2.0),
-    ("lugre", "viscous", 0.0),
-    ("gms", "exponent", 2.0),
-    ("gms", "viscous", 0.0),
-    ("bouc_wen", "amplitude", 1.0),
-    ("bouc_wen_by_level", "amplitude", 1.0),
+/// Values of parameters that are left out, and the laws in which they may be: a part that many contacts do not have, or
+/// the usual choice of an exponent.
+const DEFAULTS: [(&str, f64, &str); 4] = [
+    ("viscous", 0.0, "stribeck stribeck_lorentzian regularised_stribeck makkar_dixon makkar_dixon_shifted lugre gms"),
+    ("exponent", 2.0, "stribeck lugre gms"),
+    ("exponent", 1.0, "dahl"),
+    ("amplitude", 1.0, "bouc_wen bouc_wen_by_level"),
 ];
 
 impl Slot {
@@ -71,9 +63,10 @@ impl Slot {
     pub(crate) fn numbers(law: &str, parameters: &'static [LawParameter]) -> Vec<Self> {
         let slot = |parameter: &'static LawParameter| {
             let parameter = parameter.parameter();
-            let is_this = |entry: &&(&str, &str, f64)| entry.0 == law && entry.1 == parameter.name();
+            let is_of = |laws: &str| laws.split(' ').any(|name| name == law);
+            let mut defaults = DEFAULTS.iter().filter(|(name, ..)| *name == parameter.name());
             Self {
-                default: DEFAULTS.iter().find(is_this).map(|entry| entry.2),
+                default: defaults.find(|(.., laws)| is_of(laws)).map(|(_, value, _)| *value),
                 ..Self::of(parameter.name(), parameter.symbol(), parameter.unit(), Shape::Number)
             }
         };
