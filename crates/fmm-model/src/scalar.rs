@@ -125,8 +125,8 @@ pub trait Scalar:
     }
 }
 
-/// Implements for a number type the operators of [`Scalar`] by its own arithmetic, each once with a number of the type and
-/// once with a plain one on the right; plain numbers on the left, assignments, and comparisons by values follow.
+/// Implements for a number type the operators of [`Scalar`] by its own arithmetic, each once with a number of the type
+/// and once with a plain one on the right; plain numbers on the left, assignments, and comparisons by values follow.
 ///
 /// The type needs `From<f64>`. A parameter of the type follows it, as in `Dual<N>, N: usize`.
 ///

@@ -71,7 +71,7 @@ const MOST_SAMPLES: f64 = 1e7;
 
 impl PlannedSensor {
     /// A sensor of displacement, velocity or acceleration, with white `noise` of this standard deviation (m, m/s, m/s²,
-    /// or in the length of the [`Guess`](crate::design::Guess)).
+    /// or in the length of the [`Guess`](super::Guess)).
     ///
     /// # Errors
     /// [`IdentifyError::WrongRecord`] for another quantity, [`IdentifyError::InvalidInput`] for a noise that is not
@@ -115,7 +115,7 @@ impl PlannedSensor {
 }
 
 impl PlannedTest {
-    /// The machine is let go at rest at `position` (m, or the length of the [`Guess`](crate::design::Guess)) and recorded
+    /// The machine is let go at rest at `position` (m, or the length of the [`Guess`](super::Guess)) and recorded
     /// `rate` times a second for `duration` (s).
     ///
     /// # Errors

@@ -5,11 +5,13 @@ use fmm_friction::Role;
 
 use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
+use crate::experiment::force::direction::mean_friction;
 use crate::fit::stages::{Begin, Observer, lowest};
 use crate::law::dimension::{Scales, is_force};
 use crate::linear_algebra::Span;
 use crate::problem::Problem;
 use crate::problem::force::ForceProblem;
+use crate::problem::starts::Fitted;
 use crate::residuals::structure::ResidualStructure;
 
 /// Sharpness of the bends of a law over the typical one in a free vibration (1).
@@ -70,7 +72,7 @@ pub(crate) fn fit_forces(
 }
 
 /// Values that the law of `forces` typically has in such records, its bends at each of several places.
-pub(crate) fn typical(forces: &ForceProblem<'_>) -> Vec<Vec<f64>> {
+fn typical(forces: &ForceProblem<'_>) -> Vec<Vec<f64>> {
     let law = forces.law();
     let mut positions = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut speed, mut load, mut count): (f64, f64, usize) = (0.0, 0.0, 0);
@@ -100,6 +102,13 @@ pub(crate) fn typical(forces: &ForceProblem<'_>) -> Vec<Vec<f64>> {
         values
     };
     sharpnesses.map(of_sharpness).collect()
+}
+
+/// Starts for a `problem` of forces where the fit of a `special` case of its law has ended: all that both have is as it
+/// was found, and the rest as it typically is, or zero.
+pub(crate) fn nested_starts(problem: &Problem<'_>, special: &Fitted) -> Vec<Vec<f64>> {
+    let typical = problem.forces().map_or_else(Vec::new, |forces| typical(&forces));
+    typical.iter().map(|start| problem.nested(special, start)).collect()
 }
 
 /// Values to begin a fit of `forces` with, the nearest to the records first. Those at which the law has no value are
@@ -138,28 +147,11 @@ fn starts(forces: &ForceProblem<'_>) -> Result<Vec<Vec<f64>>, EvaluationError> {
     Ok(found.into_iter().map(|(_, values)| values).collect())
 }
 
-/// Half the difference between the mean forces of the two directions.
+/// Friction in the mean of the way, of a size that counts beside the largest force.
 fn level(forces: &ForceProblem<'_>) -> f64 {
-    let mean = |sign: f64| {
-        let (mut sum, mut count) = (0.0, 0_usize);
-        for record in forces.records() {
-            for (force, velocity) in record.forces().iter().zip(record.velocities()) {
-                if velocity * sign > record.motion.rest_speed {
-                    sum += force;
-                    count += 1;
-                }
-            }
-        }
-        (count > 0).then(|| sum / count as f64)
-    };
-    let level = match (mean(1.0), mean(-1.0)) {
-        (Some(forth), Some(back)) => 0.5 * (forth - back),
-        (Some(forth), None) => forth,
-        (None, Some(back)) => -back,
-        (None, None) => 0.0,
-    };
     let all = forces.records().iter().flat_map(ForceRecord::forces);
-    level.max(1e-3 * all.fold(0.0, |largest, force| force.abs().max(largest)))
+    let least = 1e-3 * all.fold(0.0, |largest, force| force.abs().max(largest));
+    mean_friction(forces.records()).unwrap_or(0.0).max(least)
 }
 
 /// The sum of squares, and `values` with all levels by one factor and the shapes set to the best fit.
@@ -199,4 +191,48 @@ fn levelled(forces: &ForceProblem<'_>, mut values: Vec<f64>) -> Result<(f64, Vec
 /// True for a role that is proportional to friction, the viscous part included.
 fn is_proportional(role: Role) -> bool {
     is_force(role) || role == Role::Slope
+}
+
+#[cfg(test)]
+mod tests {
+    use fmm_fit::Residuals;
+
+    use super::*;
+    use crate::candidate::Candidate;
+    use crate::judgement::Inquiry;
+    use crate::machine::Machine;
+
+    /// A general law begins at the sum of squares with which its special case ended.
+    #[test]
+    fn a_general_law_begins_where_its_special_case_ended() {
+        let times: Vec<f64> = (0..600).map(|i| 0.01 * f64::from(i)).collect();
+        let of = |value: &dyn Fn(f64) -> f64| -> Vec<f64> { times.iter().map(|time| value(*time)).collect() };
+        let velocities = of(&|t| 0.06 * (3.0 * t).cos());
+        let forces = of(&|t| {
+            let v = 0.06 * (3.0 * t).cos();
+            v.signum() * (3.0 + (-v.abs() / 0.02).exp()) + 20.0 * v + 0.05 * (1e4 * t * t).sin()
+        });
+        let record = [ForceRecord::of_positions(&times, &of(&|t| 0.02 * (3.0 * t).sin()), &forces)
+            .and_then(|record| record.with_velocities(&velocities))
+            .unwrap()];
+        for (special, general) in [
+            ("coulomb", "coulomb + linear"),
+            ("coulomb + linear", "coulomb + linear + zero + asymmetry"),
+            ("coulomb_viscous", "stribeck"),
+            ("coulomb + linear", "berger + linear"),
+            ("dahl", "dahl + linear + zero"),
+        ] {
+            let [special, general] = [special, general].map(|name| Candidate::named(name).unwrap());
+            let found = Inquiry::of(&Machine::per_unit_mass(), &record).candidate(&special).unwrap();
+            let problem = Problem::of(&general, Machine::per_unit_mass(), &record).unwrap();
+            let mut residuals = vec![0.0; problem.len()];
+            let mut sum = |start: &Vec<f64>| {
+                problem.evaluate(start, &mut residuals, None).unwrap();
+                residuals.iter().map(|residual| residual * residual).sum::<f64>()
+            };
+            let least = nested_starts(&problem, &found.fitted).iter().map(&mut sum).fold(f64::INFINITY, f64::min);
+            let ratio = least / found.fit().sum_of_squares();
+            assert!((ratio - 1.0).abs() < 1e-9, "{} in {}: {ratio}", special.name(), general.name());
+        }
+    }
 }

@@ -11,7 +11,7 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::force::ForceRecord;
 use crate::experiment::{Experiment, Experiments};
-use crate::fit::nested::nested_starts;
+use crate::fit::forces::nested_starts;
 use crate::fit::stages::Begin;
 use crate::identification::beside::closest;
 use crate::identification::{Identification, Validation};

@@ -37,21 +37,29 @@ impl ForceRecord {
     /// else half the difference between the mean forces of the two directions.
     pub fn driving_friction(&self) -> Option<f64> {
         let mut loops: Vec<f64> = self.loops().iter().map(|cycle| cycle.friction.value).collect();
-        let friction = if loops.is_empty() { self.mean_friction()? } else { median(&mut loops) };
-        (friction < -DRIVING * deviation(std::slice::from_ref(self))).then_some(friction)
+        let own = std::slice::from_ref(self);
+        let friction = if loops.is_empty() { mean_friction(own)? } else { median(&mut loops) };
+        (friction < -DRIVING * deviation(own)).then_some(friction)
     }
+}
 
-    /// Half the difference between the mean forces of the two directions, or the mean force along the only one.
-    fn mean_friction(&self) -> Option<f64> {
-        let means = [1.0, -1.0].map(|sign| {
-            let pairs = self.velocities().iter().zip(self.forces());
-            let forces = || pairs.clone().filter(|(v, _)| **v * sign > self.motion.rest_speed).map(|(_, f)| sign * f);
-            let count = forces().count();
-            (count > 0).then(|| forces().sum::<f64>() / count as f64)
-        });
-        match means {
-            [Some(forth), Some(back)] => Some(0.5 * (forth + back)),
-            [one, other] => one.or(other),
+/// Half the difference between the mean forces of the two directions in all `records`, or the mean force along the only
+/// one; `None` if nothing moves.
+pub(crate) fn mean_friction(records: &[ForceRecord]) -> Option<f64> {
+    let means = [1.0, -1.0].map(|sign| {
+        let (mut sum, mut count) = (0.0, 0_usize);
+        for record in records {
+            for (force, velocity) in record.forces().iter().zip(record.velocities()) {
+                if velocity * sign > record.motion.rest_speed {
+                    sum += sign * force;
+                    count += 1;
+                }
+            }
         }
+        (count > 0).then(|| sum / count as f64)
+    });
+    match means {
+        [Some(forth), Some(back)] => Some(0.5 * (forth + back)),
+        [one, other] => one.or(other),
     }
 }

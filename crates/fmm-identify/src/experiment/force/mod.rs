@@ -1,6 +1,6 @@
 //! Measured force along a measured motion: joints, tribometers, dampers.
 
-mod direction;
+pub(crate) mod direction;
 mod loops;
 mod measured;
 mod onset;
