@@ -173,6 +173,16 @@ impl Panel {
         self
     }
 
+    /// The same axes with points (x, y, standard uncertainty of y) with bars of two standard uncertainties.
+    pub(crate) fn with_bars(self, label: &str, points: &[(f64, f64, f64)]) -> Self {
+        /// Points at most; of more, bars say nothing and weigh much.
+        const MOST: usize = 100;
+        let dots = points.iter().map(|(x, y, _)| (*x, *y));
+        let panel = self.with(Role::Points, format!("{label}, with two standard uncertainties"), dots);
+        let bars = points.iter().filter(|_| points.len() <= MOST);
+        bars.fold(panel, |panel, (x, y, u)| panel.with(Role::Measured, "", [(*x, y - 2.0 * u), (*x, y + 2.0 * u)]))
+    }
+
     /// The same axes with cells below the layers.
     #[must_use]
     pub fn over(mut self, cells: Cells) -> Self {

@@ -275,7 +275,8 @@ fn dependences(summary: &Summary) -> String {
         let name = words(against);
         let x_label = if against_unit.is_empty() { name } else { label(name, against_unit) };
         let part = |value: fn(&(f64, f64, f64, f64)) -> f64| band.iter().map(move |at| (at.0, value(at)));
-        let panel = with_records(Panel::new(x_label, label(words(quantity), unit), 300.0), points)
+        let panel = Panel::new(x_label, label(words(quantity), unit), 300.0)
+            .with_bars("records", points)
             .with(Role::Fitted, "line, with an effect of each record", part(|at| at.1))
             .with(Role::Reference, "its 95 % interval", part(|at| at.2))
             .with(Role::Reference, "", part(|at| at.3));
@@ -311,17 +312,6 @@ fn sheet(summary: &Summary) -> String {
     )
 }
 
-/// Records as points (place, value, standard uncertainty) with bars of two standard uncertainties.
-fn with_records(panel: Panel, points: &[(f64, f64, f64)]) -> Panel {
-    let dots = points.iter().map(|(x, y, _)| (*x, *y));
-    let panel = panel.with(Role::Points, "records, with two standard uncertainties", dots);
-    // Of many, bars say nothing and weigh much.
-    points
-        .iter()
-        .filter(|_| points.len() <= 100)
-        .fold(panel, |panel, (x, y, u)| panel.with(Role::Measured, "", [(*x, y - 2.0 * u), (*x, y + 2.0 * u)]))
-}
-
 /// Each record's value, and the consensus with its interval.
 fn picture(rows: &[Row], summary: &Summary, quantity: &Quantity, index: usize) -> String {
     let belongs = |row: &Row| quantity.loads.is_none_or(|loads| is_under(row, loads));
@@ -334,7 +324,8 @@ fn picture(rows: &[Row], summary: &Summary, quantity: &Quantity, index: usize) -
     let ends = |value: f64| [(1.0, value), (rows.len() as f64, value)];
     let [low, high] = quantity.interval_95;
     let panel = Panel::new("number of the record", label(words(&name(quantity)), &quantity.unit), 280.0);
-    let panel = with_records(panel, &points(counted))
+    let panel = panel
+        .with_bars("records", &points(counted))
         .with(Role::Fitted, "consensus", ends(quantity.mean))
         .with(Role::Reference, "its 95 % interval", ends(low))
         .with(Role::Reference, "", ends(high));

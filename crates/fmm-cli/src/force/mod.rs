@@ -311,16 +311,8 @@ fn panels(record: &ForceRecord, found: &Identification) -> Result<Vec<Panel>, Bo
     };
     let of_speed = if speed == velocity { "speed" } else { "speed by load" };
     let what = if record.goes_one_way() { "medians" } else { "half the difference of the directions, medians" };
-    let dots = bins.iter().map(|(speed, friction)| (*speed, friction.value));
-    let medians = Panel::new(label(of_speed, &speed), friction, 260.0).with(
-        Role::Points,
-        format!("{what}, with two standard uncertainties"),
-        dots,
-    );
-    let medians = bins.iter().fold(medians, |panel, (speed, friction)| {
-        let end = |sign: f64| (*speed, friction.value + sign * 2.0 * friction.uncertainty);
-        panel.with(Role::Measured, "", [end(-1.0), end(1.0)])
-    });
+    let bars: Vec<_> = bins.iter().map(|(speed, friction)| (*speed, friction.value, friction.uncertainty)).collect();
+    let medians = Panel::new(label(of_speed, &speed), friction, 260.0).with_bars(what, &bars);
     let residuals: Vec<Option<f64>> =
         record.forces().iter().zip(&said).map(|(force, said)| Some((*said)? - force)).collect();
     let left = |abscissae: &[f64]| -> Vec<(f64, f64)> {

@@ -22,7 +22,7 @@ use crate::output::Output;
 use crate::refusal::placed;
 use analysis::{Analysis, Window};
 use clap::Args;
-use fmm_frf::{FrequencyResponse, RationalFit, ResponseForm};
+use fmm_frf::{Estimated, FrequencyResponse, RationalFit, ResponseForm};
 use fmm_record::Quantity;
 use serde::Serialize;
 use trials::{Channels, Trial};
@@ -170,19 +170,24 @@ struct Measured {
     u: f64,
 }
 
+impl From<Estimated> for Measured {
+    fn from(found: Estimated) -> Self {
+        Self { value: found.value, u: found.uncertainty }
+    }
+}
+
 impl<'a> Content<'a> {
     fn of(trials: &'a [Trial], analysis: &'a Analysis) -> Self {
         let lines = |response: &FrequencyResponse| Lines {
             real: response.values().iter().map(|value| value.re).collect(),
             imag: response.values().iter().map(|value| value.im).collect(),
         };
-        let measured = |value: fmm_frf::Estimated| Measured { value: value.value, u: value.uncertainty };
         let modes = analysis.peaks.iter().filter_map(|peak| {
             let mode = peak.fit.as_ref()?;
             Some(Mode {
                 peak_hz: peak.line.frequency,
-                natural_frequency_hz: measured(mode.natural_frequency),
-                damping_ratio: measured(mode.damping_ratio),
+                natural_frequency_hz: mode.natural_frequency.into(),
+                damping_ratio: mode.damping_ratio.into(),
             })
         });
         let pulses = analysis.pulses.iter().map(|pulse| OfPulse {

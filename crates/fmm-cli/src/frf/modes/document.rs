@@ -1,10 +1,11 @@
 //! Modes for programs.
 
-use fmm_frf::{Complex64, DiagramPole, Estimated, FrequencyResponse, Mode, Residue, ShapePoint, StabilisationDiagram};
+use fmm_frf::{Complex64, DiagramPole, FrequencyResponse, Mode, Residue, ShapePoint, StabilisationDiagram};
 use serde::Serialize;
 
 use super::Found;
 use crate::answer::Detail;
+use crate::frf::Measured;
 
 /// Modes for programs; lists of a mode are as long as `responses`.
 #[derive(Serialize)]
@@ -106,23 +107,9 @@ struct Complex {
     imag: f64,
 }
 
-/// A value and its standard uncertainty.
-#[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct Measured {
-    value: f64,
-    u: f64,
-}
-
 impl From<Complex64> for Complex {
     fn from(value: Complex64) -> Self {
         Self { real: value.re, imag: value.im }
-    }
-}
-
-impl From<Estimated> for Measured {
-    fn from(found: Estimated) -> Self {
-        Self { value: found.value, u: found.uncertainty }
     }
 }
 
