@@ -7,7 +7,7 @@ use crate::finding::{Finding, Source};
 use crate::identification::beside::closest;
 use crate::identification::{Identification, Validation};
 use crate::judgement::change::asks_for_change;
-use crate::judgement::filtering::{filtering_sensor, other_quantity};
+use crate::judgement::filtering::{Filtered, filtering_sensor, other_quantity};
 use crate::judgement::rules::{EQUAL_PREDICTION, FAR, MISLEADING, NOTABLE_WIDENING, SHOWN, SHOWN_CHANGE};
 use crate::judgement::score_test::ScoreTest;
 use crate::judgement::unseen::Unseen;
@@ -58,12 +58,14 @@ pub(crate) fn explains(identifications: &[Identification]) -> bool {
 
 impl Comparison {
     /// The comparison of `candidates` by their `identifications` from `decays`, of which forces along motions have
-    /// none, and by the `validations` of each with forces that were not fitted, of which there may be none.
+    /// none, by the `validations` of each with forces that were not fitted, of which there may be none, and by a fit
+    /// behind a filter that is known.
     pub(crate) fn of(
         decays: &[Experiment],
         candidates: &[Candidate],
         mut identifications: Vec<Identification>,
         validations: Vec<Vec<Validation>>,
+        filtered: Option<Filtered>,
     ) -> Result<Self, IdentifyError> {
         let mut judgement = Judgement::of(candidates, &identifications)
             .ok_or_else(|| IdentifyError::missing("there is no law to compare; give at least one candidate"))?;
@@ -79,7 +81,7 @@ impl Comparison {
         let is_said = |warning: &Warning| *warning == Warning::OtherLaw { law: name.clone(), sentence: own.clone() };
         let others: Vec<Warning> = others.into_iter().filter(|warning| !is_said(warning)).collect();
         // A filter in the sensor that explains the record as well is a rival, though it is no law.
-        let sensor = filtering_sensor(decays, &identifications, preferred)
+        let sensor = filtering_sensor(decays, &identifications, preferred, filtered)
             .unwrap_or_else(|error| Some(Warning::left_out("a filter in the sensor", &error)));
         judgement.is_decided &= sensor.as_ref().is_none_or(|warning| matches!(warning, Warning::LeftOut { .. }));
         let quantity = other_quantity(decays, &identifications[preferred]);

@@ -19,9 +19,20 @@ use crate::machine::Machine;
 use crate::problem::Problem;
 use crate::warning::Warning;
 
+/// Fit by a simple law behind a low-pass filter in the sensor.
+pub(crate) struct Filtered {
+    /// The same law without a filter, from the end of whose fit it begins, and the values there.
+    law: String,
+    begun: Vec<f64>,
+    pub(crate) found: Identification,
+    /// Time (s) at the beginning of the records that it leaves out.
+    settled: f64,
+}
+
 /// Warning about a low-pass filter in the sensor, of which nothing was declared, that explains the records by a simple
 /// law as well as the preferred law does without: both round the motion where it reverses, and only one is friction. If
-/// the records do not determine the filter, the warning is about their beginning, which the filter leaves out.
+/// the records do not determine the filter, the warning is about their beginning, which the filter leaves out. A fit
+/// that is `known` need not be made again.
 ///
 /// # Errors
 /// The error of a fit behind a filter, if it cannot be made.
@@ -29,8 +40,10 @@ pub(crate) fn filtering_sensor(
     decays: &[Experiment],
     identifications: &[Identification],
     preferred: usize,
+    known: Option<Filtered>,
 ) -> Result<Option<Warning>, IdentifyError> {
-    let Some((found, settled)) = behind_filter(decays, identifications)? else { return Ok(None) };
+    let filtered = behind_filter(decays, identifications, known)?;
+    let Some(Filtered { found, settled, .. }) = filtered else { return Ok(None) };
     let preferred = &identifications[preferred];
     if found.rms_residual() > AS_GOOD * preferred.rms_residual() {
         return Ok(None);
@@ -70,16 +83,17 @@ pub(crate) fn other_quantity(decays: &[Experiment], preferred: &Identification) 
     all.filter(|quantity| *quantity != declared).find_map(as_quantity)
 }
 
-/// The fit by the closest simple law, behind a low-pass filter in the sensor, with the time (s) at the beginning that
-/// it leaves out; `None` if nothing is left to explain, a filter is known, the samples are unequally spaced, or there
-/// is no vibration.
+/// The fit by the closest simple law, behind a low-pass filter in the sensor, or that which is `known` if it begins at
+/// the same place; `None` if nothing is left to explain, a filter is known, the samples are unequally spaced, or there is
+/// no vibration.
 ///
 /// # Errors
 /// The error of a record of which the filter leaves too little, or that of the fit.
 pub(crate) fn behind_filter(
     decays: &[Experiment],
     identifications: &[Identification],
-) -> Result<Option<(Identification, f64)>, IdentifyError> {
+    known: Option<Filtered>,
+) -> Result<Option<Filtered>, IdentifyError> {
     let is_known = |decay: &Experiment| {
         decay.sensor().low_pass().is_some()
             || decay.drive().is_some()
@@ -98,6 +112,10 @@ pub(crate) fn behind_filter(
     if !structure.is_correlated() && structure.residual < EXCESS_OF_FILTER * structure.noise {
         return Ok(None);
     }
+    let (law, begun) = (simple.law().to_owned(), simple.fit().values().to_vec());
+    if let Some(known) = known.filter(|known| known.law == law && known.begun == begun) {
+        return Ok(Some(known));
+    }
     let sensor = Sensor::default().with_free_low_pass(FILTER_ORDER)?;
     let behind = |decay: &Experiment| {
         let stride = (decay.record().rate() / (ENOUGH_SAMPLES * decay.guess.frequency())) as usize;
@@ -110,5 +128,5 @@ pub(crate) fn behind_filter(
         ControlFlow::Continue(())
     })?;
     let settled = decays.iter().map(|decay| sensor.settling(decay.guess.frequency())).fold(0.0, f64::max);
-    Ok(Some((found, settled)))
+    Ok(Some(Filtered { law, begun, found, settled }))
 }

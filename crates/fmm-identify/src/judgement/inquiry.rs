@@ -274,7 +274,7 @@ impl<'a> Inquiry<'a> {
             }
             let Fits { candidates, identifications, left_out } = fitted;
             let validations = identifications.iter().map(|found| self.validations(found)).collect::<Result<_, _>>()?;
-            let mut comparison = Comparison::of(decays, &candidates, identifications, validations)?;
+            let mut comparison = Comparison::of(decays, &candidates, identifications, validations, None)?;
             comparison.warnings.extend(left_out);
             Ok(comparison)
         })

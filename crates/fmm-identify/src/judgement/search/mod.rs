@@ -18,7 +18,7 @@ use crate::identification::beside::closest;
 use crate::identification::drift::drifts_in_vain;
 use crate::judgement::Judgement;
 use crate::judgement::comparison::{Comparison, explains};
-use crate::judgement::filtering::behind_filter;
+use crate::judgement::filtering::{Filtered, behind_filter};
 use crate::judgement::inquiry::Inquiry;
 use crate::judgement::rules::{
     ALLOWED, ENOUGH_TO_JUDGE, INEXACT, LEAST_PRESLIDING, MOST_ITERATIONS, MOST_ITERATIONS_OF_CHANGE,
@@ -103,7 +103,8 @@ impl Inquiry<'_> {
         let dropped = found.drop_unfinished(&self.at(SearchStage::Simple));
         tests.retain(|test| test.uncertainty.is_finite());
         left_out.extend(found.failures());
-        let mut comparison = Comparison::of(decays, &found.candidates, found.identifications, Vec::new())?;
+        let Found { candidates, identifications, filtered, .. } = found;
+        let mut comparison = Comparison::of(decays, &candidates, identifications, Vec::new(), filtered)?;
         comparison.score_tests = tests;
         comparison.excluded = found.excluded;
         comparison.warnings.extend(left_out);
@@ -129,6 +130,8 @@ struct Found {
     excluded: Vec<String>,
     /// Terms that the records ask for beside any friction over the speed.
     beside: Terms,
+    /// The fit behind a filter in the sensor, if one was made.
+    filtered: Option<Filtered>,
     is_cut_short: bool,
 }
 
@@ -336,12 +339,12 @@ impl Run<'_, '_> {
         let plain = ShownFriction::of(&self.inquiry.machine, Terms::NONE, few, self.end).ok();
         // A filter in the sensor looks like a bent spring as well. A fit behind it that fails is reported by the
         // comparison.
-        let is_filtered = |found: &Found| {
-            let behind = behind_filter(self.decays, &found.identifications).ok().flatten();
-            behind.is_some_and(|(found, _)| !found.structure.is_correlated())
+        let mut is_filtered = || {
+            found.filtered = behind_filter(self.decays, &found.identifications, None).ok().flatten();
+            found.filtered.as_ref().is_some_and(|behind| !behind.found.structure.is_correlated())
         };
         let has_spring = !reference(self.decays).is_run_down();
-        let structured = plain.as_ref().filter(|plain| has_spring && plain.is_structured && !is_filtered(found));
+        let structured = plain.as_ref().filter(|plain| has_spring && plain.is_structured && !is_filtered());
         let further = structured.and_then(|plain| plain.beside(&self.inquiry.machine, few, self.end));
         let shown = further.as_ref().or(plain.as_ref());
         let beside = shown.map_or(Terms::NONE, |shown| shown.terms.clone());
