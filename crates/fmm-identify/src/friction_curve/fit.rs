@@ -43,8 +43,37 @@ pub(super) struct CurveFit {
     pub(super) slowest: f64,
     /// Residual over noise, if it is too large and no noise.
     pub(super) excess: Option<f64>,
-    /// A static level above the level at rest is fitted.
-    pub(super) is_held: bool,
+    pub(super) static_level: StaticLevel,
+}
+
+/// Static level above the level at rest, beside a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StaticLevel {
+    /// No drive goes on, so it changes nothing.
+    Absent,
+    /// Fitted, and not shown by the records.
+    Possible,
+    /// Fitted, and shown.
+    Shown,
+    /// Held at the level at rest, since no fit of it has ended.
+    Open,
+}
+
+impl StaticLevel {
+    /// Reason not to take the curve near rest for friction over the speed.
+    pub(super) fn limit(self) -> Option<&'static str> {
+        match self {
+            Self::Absent | Self::Possible => None,
+            Self::Shown => Some(
+                "the contact holds more than it slides with: a static level is fitted beside the curve, and near rest \
+                 the record hardly tells one from the other",
+            ),
+            Self::Open => Some(
+                "no fit of a static level beside the curve has ended: if the contact holds more than it slides with, \
+                 the curve near rest is wrong",
+            ),
+        }
+    }
 }
 
 /// The problem of levels, about the fit by Coulomb and viscous friction.
@@ -141,10 +170,10 @@ impl CurveFit {
                 if are_samples { few.simulated_roughly() } else { few }
             };
             // What does not settle with few samples does not with all of them.
-            values =
-                Settled::with_static(&few(problem), holding.as_ref().map(few).as_ref(), values, scale, end)?.values;
+            let holding = holding.as_ref().map(few);
+            values = Settled::with_static(&few(problem), holding.as_ref(), values, scale, end)?.0.values;
         }
-        let Settled { values, near, likelihood, posterior, .. } =
+        let (Settled { values, near, likelihood, posterior, .. }, static_level) =
             Settled::with_static(problem, holding.as_ref(), values, scale, end)?;
         // Speeds at the samples of the records.
         let path = Path::of(&problem.with_records(experiments), &values).map_err(failure)?;
@@ -158,7 +187,7 @@ impl CurveFit {
             path: path.weights(top),
             slowest: path.slowest(),
             excess: near.excess(problem),
-            is_held: values.get(problem.table.law + STATIC).is_some_and(|excess| *excess > 0.0 && holding.is_some()),
+            static_level,
         })
     }
 }
@@ -181,34 +210,37 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    /// The end for `problem`, or for that with a static level where the records show one: the same but for a fitted
-    /// static level.
+    /// The end for `problem`, or where a drive goes on that with a static level, which belongs to the uncertainty of the
+    /// curve near rest however little of it is shown.
     fn with_static(
         problem: &Problem<'_>,
         holding: Option<&Problem<'_>>,
-        values: Vec<f64>,
+        mut values: Vec<f64>,
         scale: f64,
         end: Option<Instant>,
-    ) -> Result<Self, IdentifyError> {
+    ) -> Result<(Self, StaticLevel), IdentifyError> {
         let of = |problem: &Problem<'_>, values| Self::of(problem, values, scale, MOST_STEPS, end);
+        let ended = |settled: Self| if settled.has_ended { Ok(settled) } else { Err(not_settled()) };
+        let Some(holding) = holding else {
+            return Ok((ended(of(problem, values)?)?, StaticLevel::Absent));
+        };
+        let excess = holding.table.law + STATIC;
+        let known = std::mem::take(&mut values[excess]);
         let plain = of(problem, values)?;
         // A motion that is nowhere held does not change with a small excess: fits begin far from none.
-        let held = |holding: &Problem<'_>| {
-            let begun = STATIC_EXCESSES.map(|share| {
-                let mut values = plain.values.clone();
-                values[holding.table.law + STATIC] = share * scale;
-                of(holding, values).ok().filter(|settled| settled.has_ended)
-            });
-            begun.into_iter().flatten().min_by(|a, b| a.squares().total_cmp(&b.squares()))
-        };
-        let held = holding.and_then(held);
+        let starts = if known > 0.0 { vec![known] } else { STATIC_EXCESSES.map(|share| share * scale).to_vec() };
+        let begun = starts.into_iter().filter_map(|start| {
+            let mut values = plain.values.clone();
+            values[excess] = start;
+            of(holding, values).ok().filter(|settled| settled.has_ended)
+        });
+        let held = begun.min_by(|a, b| a.squares().total_cmp(&b.squares()));
         let least = plain.squares() - PARAMETER * plain.likelihood.variance;
-        let is_shown = |held: &Self| !plain.has_ended || held.squares() < least;
-        match held.filter(is_shown) {
-            Some(held) => Ok(held),
+        match held {
             // The intervals hold near the curve about which the record was linearised, and nowhere else.
-            None if plain.has_ended => Ok(plain),
-            None => Err(not_settled()),
+            None => Ok((ended(plain)?, StaticLevel::Open)),
+            Some(held) if !plain.has_ended || held.squares() < least => Ok((held, StaticLevel::Shown)),
+            Some(held) => Ok((held, StaticLevel::Possible)),
         }
     }
 
@@ -273,10 +305,18 @@ fn step_of_levels(posterior: &Posterior, levels: &[f64], scale: f64) -> DVector<
 fn moved(problem: &Problem<'_>, near: &Linearised, values: &[f64], step: &[f64], variance: f64) -> Option<Vec<f64>> {
     /// Share of the predicted change, and variances, by which the sum of squares may differ from the prediction.
     const WRONG: (f64, f64) = (0.3, 3.0);
+    /// Share of a static excess that is left after a step, at least: where it is gone nothing is held, and no derivative
+    /// leads back.
+    const LEFT: f64 = 0.5;
+    let excess = problem.table.law + STATIC;
+    let is_fitted = excess < problem.table.shared && !problem.parameters()[excess].bounds().is_fixed();
     let mut residuals = vec![0.0; problem.len()];
     let mut share = 1.0;
     while share > 1e-3 {
-        let trial = problem.clamped(&near.moved(values, step, share));
+        let mut trial = problem.clamped(&near.moved(values, step, share));
+        if is_fitted {
+            trial[excess] = trial[excess].max(LEFT * values[excess]);
+        }
         let scaled: Vec<f64> = step.iter().map(|by| share * by).collect();
         let predicted = near.predicted(&scaled);
         if problem.evaluate(&trial, &mut residuals, None).is_ok() {

@@ -41,7 +41,7 @@ use crate::quantities::table::{Table, mass_of_stiffness};
 /// ```
 ///
 /// Ring-downs, run-downs, impacts and driven motions show it, one or several under one load. A contact that holds more
-/// than it slides with has a static level beside the curve where a drive goes on and shows it. Of a free motion the part
+/// than it slides with has a static level, which is fitted beside the curve where a drive goes on. Of a free motion the part
 /// before its rest is taken, which no static level changes.
 ///
 /// The curve is fifteen levels at fixed speeds with cubics between them, fitted through every reversal and stop. Before
@@ -208,11 +208,7 @@ impl FrictionCurve {
                  friction over speed acts, such as a spring that is not linear or friction that changes in time"
             ));
         }
-        if fit.is_held {
-            let what = "the contact holds more than it slides with: a static level is fitted beside the curve, and near \
-                        rest the record hardly tells one from the other";
-            limits.push(what.to_owned());
-        }
+        limits.extend(fit.static_level.limit().map(str::to_owned));
         Self {
             speeds: KNOTS.map(|s| s * fit.top),
             speed_unit: units.velocity().to_string(),

@@ -62,8 +62,8 @@ pub(super) const SETTLED: f64 = 0.05;
 /// parameter of no effect is above it once in 100 000 records.
 pub(super) const EXPLAINED: f64 = 20.0;
 
-/// Fall of the misfit, in variances of the noise, above which a static level is fitted (1). Origin: Akaike's cost of one
-/// parameter; where none is, one more parameter widens the band and does no harm.
+/// Fall of the misfit, in variances of the noise, above which a static level is shown (1). Origin: Akaike's cost of one
+/// parameter.
 pub(super) const PARAMETER: f64 = 2.0;
 
 /// Static level above the level at rest over the mean friction with which fits of a driven motion begin (1). Origin:
