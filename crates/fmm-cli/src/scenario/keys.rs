@@ -51,11 +51,23 @@ const ALIASES: &[(&str, &str, &[&str])] = &[
 
 /// Values of parameters that are left out, and the laws in which they may be: a part that many contacts do not have, or
 /// the usual choice of an exponent.
-const DEFAULTS: [(&str, f64, &str); 4] = [
-    ("viscous", 0.0, "stribeck stribeck_lorentzian regularised_stribeck makkar_dixon makkar_dixon_shifted lugre gms"),
-    ("exponent", 2.0, "stribeck lugre gms"),
-    ("exponent", 1.0, "dahl"),
-    ("amplitude", 1.0, "bouc_wen bouc_wen_by_level"),
+const DEFAULTS: [(&str, f64, &[&str]); 4] = [
+    (
+        "viscous",
+        0.0,
+        &[
+            "stribeck",
+            "stribeck_lorentzian",
+            "regularised_stribeck",
+            "makkar_dixon",
+            "makkar_dixon_shifted",
+            "lugre",
+            "gms",
+        ],
+    ),
+    ("exponent", 2.0, &["stribeck", "lugre", "gms"]),
+    ("exponent", 1.0, &["dahl"]),
+    ("amplitude", 1.0, &["bouc_wen", "bouc_wen_by_level"]),
 ];
 
 impl Slot {
@@ -63,10 +75,9 @@ impl Slot {
     pub(crate) fn numbers(law: &str, parameters: &'static [LawParameter]) -> Vec<Self> {
         let slot = |parameter: &'static LawParameter| {
             let parameter = parameter.parameter();
-            let is_of = |laws: &str| laws.split(' ').any(|name| name == law);
-            let mut defaults = DEFAULTS.iter().filter(|(name, ..)| *name == parameter.name());
+            let is_this = |(name, _, laws): &&(&str, f64, &[&str])| *name == parameter.name() && laws.contains(&law);
             Self {
-                default: defaults.find(|(.., laws)| is_of(laws)).map(|(_, value, _)| *value),
+                default: DEFAULTS.iter().find(is_this).map(|(_, value, _)| *value),
                 ..Self::of(parameter.name(), parameter.symbol(), parameter.unit(), Shape::Number)
             }
         };

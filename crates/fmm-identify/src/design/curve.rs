@@ -66,7 +66,7 @@ impl PlannedCurve {
                     test.name()
                 )));
             }
-            local.path(test)
+            local.path_of(test)
         };
         let paths = tests.iter().map(path).collect::<Result<Vec<_>, _>>()?;
         let expected = Expected::of(guess.machine, layout, values, &Path::of_all(paths.iter()));

@@ -229,7 +229,7 @@ impl Local<'_> {
     }
 
     /// Path of the motion of `test`.
-    pub(crate) fn path(&self, test: &PlannedTest) -> Result<Path, IdentifyError> {
+    pub(crate) fn path_of(&self, test: &PlannedTest) -> Result<Path, IdentifyError> {
         let experiments = [self.experiment(test)?];
         let (problem, values) = self.problem(test, &experiments)?;
         Path::of(&problem, &values).map_err(|error| IdentifyError::simulation(self.guess.model.law_name(), error))
