@@ -46,7 +46,7 @@ pub fn solve<P: Residuals + ?Sized>(problem: &P, start: &[f64], options: &Option
 }
 
 /// [`solve`] with an `observer` that gets the solver after every trial step; `Break` ends the fit as
-/// [`Outcome::Cancelled`] with the best values so far.
+/// [`Outcome::Cancelled`](crate::Outcome::Cancelled) with the best values so far.
 ///
 /// # Errors
 /// Those of [`solve`].
