@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
-use crate::friction_curve::fit::{CurveFit, StaticLevel};
+use crate::friction_curve::fit::CurveFit;
 use crate::friction_curve::level::FrictionLevel;
 use crate::friction_curve::levels::{LEVELS, Levels, TOP_SPEED, weights};
 use crate::friction_curve::mixture::{Posterior, Prior};
@@ -97,7 +97,7 @@ impl Expected {
             path: path.weights(self.top),
             slowest: path.slowest(),
             excess: None,
-            static_level: StaticLevel::Absent,
+            limit_near_rest: None,
         };
         FrictionCurve::of_fit(fit, Form::PerMass, &self.machine, &self.table.units, &[])
     }

@@ -43,38 +43,15 @@ pub(super) struct CurveFit {
     pub(super) slowest: f64,
     /// Residual over noise, if it is too large and no noise.
     pub(super) excess: Option<f64>,
-    pub(super) static_level: StaticLevel,
-}
-
-/// Static level above the level at rest, beside a curve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum StaticLevel {
-    /// No drive goes on, so it changes nothing.
-    Absent,
-    /// Fitted, and not shown by the records.
-    Possible,
-    /// Fitted, and shown.
-    Shown,
-    /// Held at the level at rest, since no fit of it has ended.
-    Open,
-}
-
-impl StaticLevel {
     /// Reason not to take the curve near rest for friction over the speed.
-    pub(super) fn limit(self) -> Option<&'static str> {
-        match self {
-            Self::Absent | Self::Possible => None,
-            Self::Shown => Some(
-                "the contact holds more than it slides with: a static level is fitted beside the curve, and near rest \
-                 the record hardly tells one from the other",
-            ),
-            Self::Open => Some(
-                "no fit of a static level beside the curve has ended: if the contact holds more than it slides with, \
-                 the curve near rest is wrong",
-            ),
-        }
-    }
+    pub(super) limit_near_rest: Option<&'static str>,
 }
+
+/// Limits of a curve near rest where a drive goes on.
+const HOLDS_MORE: &str = "the contact holds more than it slides with: a static level is fitted beside the curve, and \
+                          near rest the record hardly tells one from the other";
+const STATIC_LEVEL_OPEN: &str = "no fit of a static level beside the curve has ended: if the contact holds more than \
+                                 it slides with, the curve near rest is wrong";
 
 /// The problem of levels, about the fit by Coulomb and viscous friction.
 pub(super) struct Levelled<'a> {
@@ -173,7 +150,7 @@ impl CurveFit {
             let holding = holding.as_ref().map(few);
             values = Settled::with_static(&few(problem), holding.as_ref(), values, scale, end)?.0.values;
         }
-        let (Settled { values, near, likelihood, posterior, .. }, static_level) =
+        let (Settled { values, near, likelihood, posterior, .. }, limit_near_rest) =
             Settled::with_static(problem, holding.as_ref(), values, scale, end)?;
         // Speeds at the samples of the records.
         let path = Path::of(&problem.with_records(experiments), &values).map_err(failure)?;
@@ -187,7 +164,7 @@ impl CurveFit {
             path: path.weights(top),
             slowest: path.slowest(),
             excess: near.excess(problem),
-            static_level,
+            limit_near_rest,
         })
     }
 }
@@ -211,18 +188,18 @@ pub(super) struct Settled {
 
 impl Settled {
     /// The end for `problem`, or where a drive goes on that with a static level, which belongs to the uncertainty of the
-    /// curve near rest however little of it is shown.
+    /// curve near rest however little of it is shown; and the limit that follows.
     fn with_static(
         problem: &Problem<'_>,
         holding: Option<&Problem<'_>>,
         mut values: Vec<f64>,
         scale: f64,
         end: Option<Instant>,
-    ) -> Result<(Self, StaticLevel), IdentifyError> {
+    ) -> Result<(Self, Option<&'static str>), IdentifyError> {
         let of = |problem: &Problem<'_>, values| Self::of(problem, values, scale, MOST_STEPS, end);
         let ended = |settled: Self| if settled.has_ended { Ok(settled) } else { Err(not_settled()) };
         let Some(holding) = holding else {
-            return Ok((ended(of(problem, values)?)?, StaticLevel::Absent));
+            return Ok((ended(of(problem, values)?)?, None));
         };
         let excess = holding.table.law + STATIC;
         let known = std::mem::take(&mut values[excess]);
@@ -238,9 +215,9 @@ impl Settled {
         let least = plain.squares() - PARAMETER * plain.likelihood.variance;
         match held {
             // The intervals hold near the curve about which the record was linearised, and nowhere else.
-            None => Ok((ended(plain)?, StaticLevel::Open)),
-            Some(held) if !plain.has_ended || held.squares() < least => Ok((held, StaticLevel::Shown)),
-            Some(held) => Ok((held, StaticLevel::Possible)),
+            None => Ok((ended(plain)?, Some(STATIC_LEVEL_OPEN))),
+            Some(held) if !plain.has_ended || held.squares() < least => Ok((held, Some(HOLDS_MORE))),
+            Some(held) => Ok((held, None)),
         }
     }
 

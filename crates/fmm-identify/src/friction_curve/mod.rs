@@ -208,7 +208,7 @@ impl FrictionCurve {
                  friction over speed acts, such as a spring that is not linear or friction that changes in time"
             ));
         }
-        limits.extend(fit.static_level.limit().map(str::to_owned));
+        limits.extend(fit.limit_near_rest.map(str::to_owned));
         Self {
             speeds: KNOTS.map(|s| s * fit.top),
             speed_unit: units.velocity().to_string(),

@@ -7,7 +7,7 @@ use crate::monte_carlo::block::BLOCK_TRIALS;
 
 /// The share of trials that may fail, in [0, 1); 0 unless set.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct AllowedFailures(pub(crate) f64);
+pub(crate) struct AllowedFailures(pub(super) f64);
 
 impl AllowedFailures {
     pub(crate) fn new(share: f64) -> Result<Self, UncertaintyError> {
