@@ -88,6 +88,9 @@ fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
 }
 
+/// Relative difference of equal values that single precision has rounded somewhere on their way (1).
+pub(crate) const SINGLE_ROUNDING: f64 = f32::EPSILON as f64;
+
 /// The step of the lattice on which all of `values` lie, in their unit; `None` if they lie on none.
 ///
 /// The step is the smallest difference between values that occur, or a whole fraction of it down to an eighth,
@@ -116,14 +119,16 @@ pub fn quantisation_step(values: &[f64]) -> Option<f64> {
     let samples = sorted.len();
     sorted.sort_unstable_by(f64::total_cmp);
     let largest = sorted.first()?.abs().max(sorted.last()?.abs());
-    // Values that differ by rounding only are the same.
-    let rounding = 16.0 * f64::EPSILON * largest;
-    sorted.dedup_by(|next, kept| *next - *kept <= rounding);
-    if sorted.len() < 2 || (sorted.len() < ENOUGH && 2 * sorted.len() > samples) {
-        return None;
-    }
-    let smallest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-    (1..=FRACTIONS).find_map(|fraction| lattice(&sorted, smallest / fraction as f64, rounding))
+    // Values that differ by rounding only are the same: in double precision, or in single somewhere on their way.
+    [16.0 * f64::EPSILON, SINGLE_ROUNDING].into_iter().find_map(|precision| {
+        let rounding = precision * largest;
+        sorted.dedup_by(|next, kept| *next - *kept <= rounding);
+        if sorted.len() < 2 || (sorted.len() < ENOUGH && 2 * sorted.len() > samples) {
+            return None;
+        }
+        let smallest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        (1..=FRACTIONS).find_map(|fraction| lattice(&sorted, smallest / fraction as f64, rounding))
+    })
 }
 
 /// The step of the lattice through `sorted` that is near `step`, refined on the way as the distances grow; `None` if
@@ -209,6 +214,16 @@ mod tests {
         let printed: Vec<f64> = (0..500).map(|i| (f64::from(i % 200) * 5.0832e-3 * 1e4).round() / 1e4).collect();
         let step = quantisation_step(&printed).unwrap();
         assert!((step - 5.0832e-3).abs() < 1e-6, "{step}");
+    }
+
+    #[test]
+    fn lattice_is_found_behind_a_gain_in_single_precision() {
+        // 16 bits over ±1, whose gain was applied with errors of single precision that are not alike for equal counts.
+        let step = 2f64.powi(-15);
+        let count = |i: u32| (30_000.0 * (f64::from(i) * 0.01).sin()).round();
+        let rounded = |i: u32| step * count(i) * (1.0 + f64::from(i * 7919 % 3) * 2e-8);
+        let found = quantisation_step(&(0..5000).map(rounded).collect::<Vec<_>>()).unwrap();
+        assert!((found / step - 1.0).abs() < 1e-6, "{found}");
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Samples cut off at the limits of the converter.
 
-use crate::examination::noise::noise;
-use crate::examination::noise::quantisation_step;
+use crate::examination::noise::{SINGLE_ROUNDING, noise, quantisation_step};
 use crate::numerics::range;
 
 /// Samples that lie on a limit of the measuring range, with the motion beyond it lost.
@@ -64,7 +63,7 @@ fn cut_off(values: &[f64], level: f64, tolerance: f64, visible: f64) -> usize {
     /// Share of the way to a distance d from the run that lies within d/2, above which the flank is steep: a straight flank
     /// makes half of it, a parabola that touches the level a quarter.
     const STEEP: f64 = 0.35;
-    let rounding = 4.0 * f64::EPSILON * level.abs();
+    let rounding = SINGLE_ROUNDING * level.abs();
     let on_level = |value: &f64| (value - level).abs() <= rounding;
     let mut count = 0;
     let mut end = 0;
@@ -122,6 +121,9 @@ mod tests {
                 assert_eq!((found.upper, found.lower), (Some(0.8), None));
                 // Noise breaks the ends of the runs up.
                 assert!(found.samples as f64 > 0.9 * true_count as f64, "{} of {true_count}", found.samples);
+                // A gain in single precision.
+                let rounded = values.iter().enumerate().map(|(i, v)| v * (1.0 + (i * 7919 % 3) as f64 * 2e-8));
+                assert_eq!(saturation(&rounded.collect::<Vec<_>>()).unwrap().samples, found.samples);
             }
         }
     }
