@@ -324,8 +324,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
 
     pub(super) fn count_step(&mut self) -> Result<(), SimulationError> {
         self.steps += 1;
-        let end = self.recorder.sampling.end();
-        if self.steps > STEP_BUDGET { Err(SimulationError::step_budget(STEP_BUDGET, end)) } else { Ok(()) }
+        self.recorder.sampling.require_steps(self.steps, STEP_BUDGET)
     }
 
     /// Length (s) of the step to try first: the proposal of the last one, or a part of the period of the machine on its

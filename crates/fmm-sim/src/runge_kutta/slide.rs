@@ -37,7 +37,8 @@ pub(super) struct Integrator<'a, D, L: ?Sized> {
     run: Option<Run>,
     /// Length of the step to try next (s).
     length: f64,
-    budget: usize,
+    /// Steps that are taken.
+    steps: usize,
     refiner: Refiner<D>,
 }
 
@@ -66,7 +67,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Integrator<'a, D, L> {
             held,
             run: (natural * end < 1.0 && end > 0.0).then_some(Run { duration: end, fastest: 0.0 }),
             length: 0.1 / angular,
-            budget: STEP_BUDGET,
+            steps: 0,
             refiner: Refiner::new(tolerance, angular),
         }
     }
@@ -347,10 +348,8 @@ impl<D: Scalar, L: SlidingLaw<D> + ?Sized> Slide<D> for Integrator<'_, D, L> {
                 // Two halves instead of a step and a sliver that would cost as much.
                 length = 0.5 * rest;
             }
-            self.budget = self
-                .budget
-                .checked_sub(1)
-                .ok_or_else(|| SimulationError::step_budget(STEP_BUDGET, recorder.sampling.end()))?;
+            self.steps += 1;
+            recorder.sampling.require_steps(self.steps, STEP_BUDGET)?;
             let corner = self.field.spring.ahead(phase.direction);
             if let Some(corner) = corner.filter(|corner| self.is_there(*corner, at.state)) {
                 self.pass(phase, &mut at, corner);

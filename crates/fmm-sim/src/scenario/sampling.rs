@@ -52,6 +52,7 @@ pub struct Sampling {
     count: usize,
     channels: Channels,
     work: bool,
+    most_steps: Option<usize>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -71,12 +72,26 @@ impl Sampling {
         if count == 0 || count > MOST_SAMPLES || !(interval * count as f64).is_finite() {
             return Err(SimulationError::sampling(count, interval));
         }
-        Ok(Self { grid: Grid::Uniform { interval }, first: 0, count, channels: Channels::Both, work: false })
+        Ok(Self {
+            grid: Grid::Uniform { interval },
+            first: 0,
+            count,
+            channels: Channels::Both,
+            work: false,
+            most_steps: None,
+        })
     }
 
     /// Position and velocity at one `time` (s), which must be positive and finite.
     pub(crate) const fn one(time: f64) -> Self {
-        Self { grid: Grid::Uniform { interval: time }, first: 1, count: 1, channels: Channels::Both, work: false }
+        Self {
+            grid: Grid::Uniform { interval: time },
+            first: 1,
+            count: 1,
+            channels: Channels::Both,
+            work: false,
+            most_steps: None,
+        }
     }
 
     /// Samples at the given `times` (s), which must ascend from 0 on; position and velocity.
@@ -97,7 +112,7 @@ impl Sampling {
             return Err(SimulationError::sampling(0, 0.0));
         }
         let count = times.len();
-        Ok(Self { grid: Grid::Times(times), first: 0, count, channels: Channels::Both, work: false })
+        Ok(Self { grid: Grid::Times(times), first: 0, count, channels: Channels::Both, work: false, most_steps: None })
     }
 
     /// These sample times, keeping only `channels`.
@@ -112,6 +127,14 @@ impl Sampling {
     #[must_use]
     pub fn with_work(mut self) -> Self {
         self.work = true;
+        self
+    }
+
+    /// These sample times, for a run in `most` steps of an engine that integrates instead of the number that the engine
+    /// allows. A fit has no use for motions so slow to follow.
+    #[must_use]
+    pub fn in_steps(mut self, most: usize) -> Self {
+        self.most_steps = Some(most);
         self
     }
 
@@ -146,6 +169,12 @@ impl Sampling {
     /// True if the work up to each sample is asked for.
     pub const fn wants_work(&self) -> bool {
         self.work
+    }
+
+    /// Refuses more `steps` of a run than are asked for, or than the `usual` number.
+    pub(crate) fn require_steps(&self, steps: usize, usual: usize) -> Result<(), SimulationError> {
+        let most = self.most_steps.unwrap_or(usual);
+        if steps > most { Err(SimulationError::step_budget(most, self.end())) } else { Ok(()) }
     }
 
     /// Number of sample times of the whole grid before the first of these.

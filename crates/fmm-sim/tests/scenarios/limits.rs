@@ -13,6 +13,26 @@ fn counts_beyond_exact_times_are_refused() {
 }
 
 #[test]
+fn a_run_ends_after_the_steps_that_it_may_take() {
+    let machine = Oscillator::new(1.0, 100.0).unwrap();
+    let scenario = Scenario::new(machine, Coulomb::new(0.1).unwrap(), 1.0).unwrap().starting_at(0.1, 0.0).unwrap();
+    let dahl = Dahl::new(0.1, 1e4, 1.0).unwrap();
+    let bristles = Scenario::new(machine, dahl, 1.0).unwrap().starting_at(0.1, 0.0).unwrap();
+    let sampling = Sampling::uniform(1e-2, 500).unwrap();
+    let runs = |sampling: &Sampling| {
+        [RungeKutta::default().run(&scenario, sampling), Bristle::default().run(&bristles, sampling)]
+    };
+    for (whole, few) in runs(&sampling).into_iter().zip(runs(&sampling.clone().in_steps(100_000))) {
+        assert_eq!(whole.unwrap().position().values(), few.unwrap().position().values());
+    }
+    for refused in runs(&sampling.in_steps(10)) {
+        let refused = refused.unwrap_err();
+        let says = refused.to_string().starts_with("the motion takes more than 10 steps before 4.99 s");
+        assert!(says && matches!(refused, SimulationError::Exhausted { .. }), "{refused}");
+    }
+}
+
+#[test]
 fn samples_beyond_memory_are_an_error() {
     let scenario = Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), Coulomb::new(0.1).unwrap(), 1.0).unwrap();
     let bristles = Scenario::new(Oscillator::new(1.0, 100.0).unwrap(), Dahl::new(0.1, 1e4, 1.0).unwrap(), 1.0).unwrap();
