@@ -284,7 +284,7 @@ impl Residuals for Problem<'_> {
 
 #[cfg(test)]
 mod tests {
-    use fmm_friction::{Coulomb, CoulombViscous, Stribeck};
+    use fmm_friction::{Coulomb, CoulombViscous, RegularisedStribeck, Stribeck};
     use fmm_model::Oscillator;
     use fmm_record::{Quantity, Record};
     use fmm_sim::{Engine, Exact, Sampling, Scenario};
@@ -377,6 +377,24 @@ mod tests {
         let mut beside = vec![f64::NAN; problem.len()];
         problem.evaluate(&p, &mut beside, Some(&mut vec![f64::NAN; elements])).unwrap();
         assert_eq!(beside, residuals);
+    }
+
+    /// A contact that creeps at speeds that no record shows would take a million steps.
+    #[test]
+    fn a_motion_that_creeps_for_too_long_is_refused() {
+        let decays = decays();
+        let candidate = Candidate::of::<RegularisedStribeck>();
+        let problem = Problem::of(&candidate, Machine::per_unit_mass(), &decays[..1]).unwrap();
+        let mut p = values(&problem);
+        let mut residuals = vec![0.0; problem.len()];
+        let place = problem.parameters().iter().position(|parameter| parameter.name() == "peak_speed").unwrap();
+        p[place] = 1e-2;
+        problem.evaluate(&p, &mut residuals, None).unwrap();
+        p[place] = 1e-7;
+        let refused = problem.evaluate(&p, &mut residuals, None).unwrap_err().to_string();
+        // Four periods in 2 s, and twenty more.
+        let steps: f64 = refused.split("more than ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert!((steps - 300.0 * 24.0).abs() < 30.0, "{refused}");
     }
 
     #[test]
