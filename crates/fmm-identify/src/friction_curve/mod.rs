@@ -14,7 +14,7 @@ mod sources;
 
 use std::time::{Duration, Instant};
 
-use fmm_model::Unit;
+use fmm_model::{Rounded, Unit};
 
 pub use level::FrictionLevel;
 
@@ -26,7 +26,7 @@ use crate::friction_curve::fit::CurveFit;
 use crate::friction_curve::levels::{KNOTS, LEVELS, weights};
 use crate::friction_curve::mixture::{Posterior, moments};
 use crate::friction_curve::projection::friction;
-use crate::friction_curve::rules::DRAWS;
+use crate::friction_curve::rules::{APART, DRAWS};
 use crate::friction_curve::sources::Sources;
 use crate::identification::Identification;
 use crate::law::naming::{Form, Units};
@@ -150,7 +150,32 @@ impl FrictionCurve {
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
         let terms = found.fitted.model.terms.beside_friction();
-        Self::with_terms(found.machine(), terms, &found.experiments(experiments)?, end)
+        let mut curve = Self::with_terms(found.machine(), terms, &found.experiments(experiments)?, end)?;
+        let apart = curve.apart_from(found, experiments);
+        curve.limits.extend(apart);
+        Ok(curve)
+    }
+
+    /// The end of the speeds of the record at which the law of `found`, which explains the records, lies farther from the
+    /// curve, in a sentence, if that is far.
+    fn apart_from(&self, found: &Identification, experiments: &[Experiment]) -> Option<String> {
+        if found.structure.is_structured() {
+            return None;
+        }
+        let by_law = self.by_law(found, experiments)?;
+        let lowest = by_law.iter().find(|(speed, _)| *speed >= self.slowest)?;
+        let ends = [lowest, by_law.last()?].into_iter().filter_map(|(speed, by_law)| {
+            let level = self.at(*speed)?;
+            Some(((level.value() - by_law).abs() / level.uncertainty(), speed, by_law))
+        });
+        let (apart, speed, by_law) = ends.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(apart, ..)| *apart > APART)?;
+        let [speed, by_law] = [*speed, *by_law].map(|value| Rounded::significant(value, 3));
+        Some(format!(
+            "at {speed} {}, {} has {by_law} {}, {apart:.1} standard uncertainties from the curve: one of the two is wrong there",
+            self.speed_unit,
+            found.law(),
+            self.unit,
+        ))
     }
 
     fn with_terms(
