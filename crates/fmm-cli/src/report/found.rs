@@ -24,8 +24,8 @@ impl Curve {
     pub(crate) fn text(&self) -> String {
         match self {
             Self::Found(curve) => {
-                let limits = curve.limits().iter().map(|limit| format!("; {limit}"));
-                std::iter::once(curve.headline()).chain(limits).chain([".".to_owned()]).collect()
+                let doubts = curve.doubts().map(|doubt| format!("; {doubt}"));
+                std::iter::once(curve.headline()).chain(doubts).chain([".".to_owned()]).collect()
             }
             Self::Missing { missing } => format!("friction over speed, no law assumed: none, as {missing}."),
         }

@@ -108,7 +108,7 @@ fn friction_curve(found: &Found) -> String {
         None => return String::new(),
         Some(Curve::Missing { missing }) => format!("<p>It cannot be had: {}.</p>\n", escaped(missing)),
         Some(Curve::Found(curve)) => {
-            let sentences = std::iter::once(curve.headline()).chain(curve.limits().iter().map(ToString::to_string));
+            let sentences = std::iter::once(curve.headline()).chain(curve.doubts().map(ToOwned::to_owned));
             let text = format!("<p>{}.</p>\n", escaped(&sentences.collect::<Vec<_>>().join("; ")));
             let caption = "Grey: friction over the speed, no law assumed, with its 95 % intervals at each speed. Dark: \
                            95 % intervals for the whole curve. Red: the preferred law.";

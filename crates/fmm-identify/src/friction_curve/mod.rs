@@ -98,6 +98,8 @@ pub struct FrictionCurve {
     unit: String,
     is_whole: bool,
     limits: Vec<String>,
+    /// The law beside which it was found, where that lies far from it.
+    contradiction: Option<String>,
 }
 
 /// Kind of number in which friction is stated.
@@ -151,8 +153,7 @@ impl FrictionCurve {
     ) -> Result<Self, IdentifyError> {
         let terms = found.fitted.model.terms.beside_friction();
         let mut curve = Self::with_terms(found.machine(), terms, &found.experiments(experiments)?, end)?;
-        let apart = curve.apart_from(found, experiments);
-        curve.limits.extend(apart);
+        curve.contradiction = curve.apart_from(found, experiments);
         Ok(curve)
     }
 
@@ -250,6 +251,7 @@ impl FrictionCurve {
             unit,
             is_whole: machine.damping().is_none(),
             limits,
+            contradiction: None,
         }
     }
 
@@ -367,6 +369,12 @@ impl FrictionCurve {
     /// it.
     pub fn limits(&self) -> &[String] {
         &self.limits
+    }
+
+    /// The [`limits`](Self::limits), and the law [beside](Self::beside) which the curve was found where that explains the
+    /// records and lies far from the curve: one of the two is wrong there, and which, the records do not tell.
+    pub fn doubts(&self) -> impl Iterator<Item = &str> {
+        self.limits.iter().chain(&self.contradiction).map(String::as_str)
     }
 
     /// Speeds and friction by the law of `found`, an identification of the same `experiments`, with the damping beside

@@ -45,7 +45,7 @@ impl fmt::Display for FrictionCurve {
             writeln!(f, "  {speed:>10.4e} {}  {level}  {both}", self.speed_unit())?;
         }
         writeln!(f, "  samples down to {} {}", Rounded::significant(self.slowest(), 4), self.speed_unit())?;
-        self.limits().iter().try_for_each(|limit| writeln!(f, "  {limit}"))
+        self.doubts().try_for_each(|doubt| writeln!(f, "  {doubt}"))
     }
 }
 
@@ -95,7 +95,7 @@ mod serialised {
         /// Speed below which there is no sample.
         samples_down_to: f64,
         /// Reasons to doubt the curve.
-        limits: &'a [String],
+        limits: Vec<&'a str>,
     }
 
     impl<'a> CurveDocument<'a> {
@@ -112,7 +112,7 @@ mod serialised {
                 levels: curve.levels(),
                 simultaneous_band_95: curve.band(0.95),
                 samples_down_to: curve.slowest(),
-                limits: curve.limits(),
+                limits: curve.doubts().collect(),
             }
         }
     }

@@ -70,9 +70,9 @@ pub(super) const PARAMETER: f64 = 2.0;
 /// chosen; static levels of dry contacts lie up to twice above the sliding ones.
 pub(super) const STATIC_EXCESSES: [f64; 2] = [0.1, 0.4];
 
-/// Distance of a law from the curve over its standard uncertainty above which one of the two is wrong (1). Origin: by
-/// chance it is above once in 400 levels.
-pub(super) const APART: f64 = 3.0;
+/// Distance of a law from the curve over its standard uncertainty above which one of the two is wrong (1). Origin: of a
+/// law that is just not excluded, a level may lie four of them away.
+pub(super) const APART: f64 = 5.0;
 
 /// Draws behind a simultaneous band. Origin: its reach is known to 1 %.
 pub(super) const DRAWS: usize = 4000;
