@@ -221,7 +221,8 @@ mod tests {
         // 16 bits over ±1, whose gain was applied with errors of single precision that are not alike for equal counts.
         let step = 2f64.powi(-15);
         let count = |i: u32| (30_000.0 * (f64::from(i) * 0.01).sin()).round();
-        let rounded = |i: u32| step * count(i) * (1.0 + f64::from(i * 7919 % 3) * 2e-8);
+        let error = |i: u32| 4e-8 * (0.618_033_988_75 * f64::from(i)).fract();
+        let rounded = |i: u32| step * count(i) * (1.0 + error(i));
         let found = quantisation_step(&(0..5000).map(rounded).collect::<Vec<_>>()).unwrap();
         assert!((found / step - 1.0).abs() < 1e-6, "{found}");
     }

@@ -122,7 +122,8 @@ mod tests {
                 // Noise breaks the ends of the runs up.
                 assert!(found.samples as f64 > 0.9 * true_count as f64, "{} of {true_count}", found.samples);
                 // A gain in single precision.
-                let rounded = values.iter().enumerate().map(|(i, v)| v * (1.0 + (i * 7919 % 3) as f64 * 2e-8));
+                let error = |i: usize| 4e-8 * (0.618_033_988_75 * i as f64).fract();
+                let rounded = values.iter().enumerate().map(|(i, v)| v * (1.0 + error(i)));
                 assert_eq!(saturation(&rounded.collect::<Vec<_>>()).unwrap().samples, found.samples);
             }
         }
