@@ -3,7 +3,8 @@
 //! Ring-downs of known truth are simulated, measured with what real measurements suffer from, and judged as the crates
 //! judge them when nothing is asked for. One row a cell says how often the stated intervals hold the truth, how often a
 //! miss comes without a warning, and how often a wrong law is decided for. Seeds are fixed for every cell and record:
-//! the numbers are the same on any number of threads; times alone are not. `--list` lists the cells.
+//! the numbers are the same on any number of threads; times alone are not. `--list` lists the cells, and `--same` tells
+//! whether a record in other units, or changed by 1e-9 of itself, is judged as before.
 
 #[path = "judgement/mod.rs"]
 mod judgement;
@@ -14,7 +15,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use judgement::{Cell, Found, Summary, cells, document, speed, study, text};
+use judgement::{Cell, Found, Summary, cells, document, sameness, speed, study, text};
 
 /// Coverage and confusion of the default judgement.
 #[derive(Debug, Parser)]
@@ -42,6 +43,9 @@ struct Arguments {
     /// List the cells, and stop
     #[arg(long)]
     list: bool,
+    /// Judge each record twice more, in thousandths of its unit and changed by 1e-9 of itself, and count what changes
+    #[arg(long, conflicts_with_all = ["json", "speed"])]
+    same: bool,
     /// Time fits by the laws of many shapes instead, on all threads
     #[arg(long)]
     speed: bool,
@@ -121,6 +125,12 @@ fn run(arguments: &Arguments) -> Found<()> {
     let numbers: Vec<Range<u64>> = cells.iter().map(|cell| arguments.records(cell)).collect();
     let bar = ProgressBar::new(numbers.iter().map(|records| records.end - records.start).sum());
     bar.set_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} records, {eta} left")?);
+    if arguments.same {
+        let told = sameness(&cells, &numbers, arguments.threads, &|| bar.inc(1));
+        bar.finish_and_clear();
+        write!(out, "{told}")?;
+        return Ok(());
+    }
     let outcomes = study(&cells, &numbers, arguments.threads, &|| bar.inc(1));
     bar.finish_and_clear();
     let summaries: Vec<Summary> =

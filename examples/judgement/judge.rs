@@ -14,7 +14,7 @@ fn default_judgement(machine: &Machine, decays: &[Experiment]) -> Result<Compari
 
 /// The name of a law without what is held of it, and without a linear damping beside it, which most laws do not have of
 /// their own.
-fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     let name = name.split(',').next().unwrap_or(name).trim();
     if let Some(changing) = name.strip_suffix(" + curved change") {
         return plain(changing);
@@ -33,7 +33,7 @@ fn plain(name: &str) -> String {
 
 /// Names of the laws that the judgement leaves standing: the preferred one if it is decided, otherwise all that are not
 /// excluded.
-fn named(comparison: &Comparison) -> Vec<String> {
+pub(crate) fn named(comparison: &Comparison) -> Vec<String> {
     if comparison.is_decided() {
         return vec![plain(comparison.preferred().law())];
     }
@@ -113,7 +113,7 @@ pub(crate) fn judge(case: &Case) -> Result<Verdict, IdentifyError> {
 }
 
 /// Name of the variant.
-fn kind(warning: &Warning) -> String {
+pub(crate) fn kind(warning: &Warning) -> String {
     format!("{warning:?}").chars().take_while(char::is_ascii_alphanumeric).collect()
 }
 

@@ -35,6 +35,17 @@ pub(crate) fn study(
     threads: usize,
     done: &(dyn Fn() + Sync),
 ) -> Vec<Vec<Outcome>> {
+    on_each_record(cells, numbers, threads, done, outcome)
+}
+
+/// Results of `work` on each record of `cells`, in the same order.
+pub(crate) fn on_each_record<T: Send>(
+    cells: &[Cell],
+    numbers: &[Range<u64>],
+    threads: usize,
+    done: &(dyn Fn() + Sync),
+    work: impl Fn(&Cell, u64) -> T + Sync,
+) -> Vec<Vec<T>> {
     let jobs = numbers.iter().enumerate().flat_map(|(cell, records)| records.clone().map(move |record| (cell, record)));
     let jobs: Vec<(usize, u64)> = jobs.collect();
     let next = AtomicUsize::new(0);
@@ -43,9 +54,9 @@ pub(crate) fn study(
         for _ in 0..threads.max(1) {
             scope.spawn(|| {
                 while let Some((cell, record)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let outcome = outcome(&cells[*cell], *record);
+                    let result = work(&cells[*cell], *record);
                     if let Ok(mut finished) = finished.lock() {
-                        finished.push((*cell, *record, outcome));
+                        finished.push((*cell, *record, result));
                     }
                     done();
                 }
@@ -54,9 +65,9 @@ pub(crate) fn study(
     });
     let mut finished = finished.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     finished.sort_by_key(|(cell, record, _)| (*cell, *record));
-    let mut outcomes: Vec<Vec<Outcome>> = cells.iter().map(|_| Vec::new()).collect();
-    for (cell, _, outcome) in finished {
-        outcomes[cell].push(outcome);
+    let mut results: Vec<Vec<T>> = cells.iter().map(|_| Vec::new()).collect();
+    for (cell, _, result) in finished {
+        results[cell].push(result);
     }
-    outcomes
+    results
 }
