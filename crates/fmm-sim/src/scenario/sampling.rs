@@ -72,26 +72,17 @@ impl Sampling {
         if count == 0 || count > MOST_SAMPLES || !(interval * count as f64).is_finite() {
             return Err(SimulationError::sampling(count, interval));
         }
-        Ok(Self {
-            grid: Grid::Uniform { interval },
-            first: 0,
-            count,
-            channels: Channels::Both,
-            work: false,
-            most_steps: None,
-        })
+        Ok(Self::of(Grid::Uniform { interval }, 0, count))
+    }
+
+    /// Position and velocity at `count` times of a `grid` from number `first` on.
+    const fn of(grid: Grid, first: usize, count: usize) -> Self {
+        Self { grid, first, count, channels: Channels::Both, work: false, most_steps: None }
     }
 
     /// Position and velocity at one `time` (s), which must be positive and finite.
     pub(crate) const fn one(time: f64) -> Self {
-        Self {
-            grid: Grid::Uniform { interval: time },
-            first: 1,
-            count: 1,
-            channels: Channels::Both,
-            work: false,
-            most_steps: None,
-        }
+        Self::of(Grid::Uniform { interval: time }, 1, 1)
     }
 
     /// Samples at the given `times` (s), which must ascend from 0 on; position and velocity.
@@ -112,7 +103,7 @@ impl Sampling {
             return Err(SimulationError::sampling(0, 0.0));
         }
         let count = times.len();
-        Ok(Self { grid: Grid::Times(times), first: 0, count, channels: Channels::Both, work: false, most_steps: None })
+        Ok(Self::of(Grid::Times(times), 0, count))
     }
 
     /// These sample times, keeping only `channels`.
@@ -130,8 +121,23 @@ impl Sampling {
         self
     }
 
-    /// These sample times, for a run in `most` steps of an engine that integrates instead of the number that the engine
-    /// allows. A fit has no use for motions so slow to follow.
+    /// These sample times, for runs in `most` steps or fewer. [`RungeKutta`](crate::RungeKutta) and
+    /// [`Bristle`](crate::Bristle) end a longer run with [`SimulationError::Exhausted`]; without this they allow a
+    /// million and 300 000. Engines that do not choose their steps ignore it. A fit has no use for a contact that creeps
+    /// for longer than its record can tell.
+    ///
+    /// ```
+    /// use fmm_friction::RegularisedStribeck;
+    /// use fmm_model::Oscillator;
+    /// use fmm_sim::{Sampling, Scenario, SimulationError, simulate};
+    ///
+    /// // At 1e-7 m/s the contact still creeps, and the steps are as short as that.
+    /// let law = RegularisedStribeck::new(0.3, 0.3, 1e-7, 0.0)?;
+    /// let scenario = Scenario::new(Oscillator::new(1.0, 100.0)?, law, 1.0)?.starting_at(0.02, 0.0)?;
+    /// let run = simulate(&scenario, &Sampling::uniform(1e-2, 200)?.in_steps(5000));
+    /// assert!(matches!(run, Err(SimulationError::Exhausted { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn in_steps(mut self, most: usize) -> Self {
         self.most_steps = Some(most);
