@@ -5,6 +5,7 @@ pub(crate) mod clock;
 pub(crate) mod deflections;
 mod drive;
 mod driven;
+mod experiments;
 pub(crate) mod first_guess;
 pub(crate) mod force;
 mod impact;
@@ -32,6 +33,7 @@ use fmm_sim::{Sampling, SimulationError};
 
 pub use drive::Drive;
 pub(crate) use driven::DrivenGuess;
+pub use experiments::Experiments;
 pub use impact_trial::{ImpactSummary, ImpactTrial};
 pub use preparation::{Offset, Preparation, RecordSummary};
 pub(crate) use sensor::Filter;
@@ -40,71 +42,21 @@ pub use sensor::Sensor;
 use crate::error::IdentifyError;
 use crate::experiment::deflections::Deflections;
 use crate::experiment::first_guess::{Dissipation, FirstGuess};
-use crate::experiment::force::ForceRecord;
 use crate::experiment::lines::Lines;
 use crate::experiment::nuisance::Nuisance;
 use crate::experiment::run_down::RunDownGuess;
 use crate::machine::Machine;
 use crate::warning::Warning;
 
-/// Steps of an engine in a period of the machine at most, and periods that are taken beside those of the record (1).
-/// Origin: 66 steps are the rule at full accuracy; a contact that creeps more slowly than this tells is at rest to any
-/// record, and took minutes of a fit.
+/// Steps of an engine in a period of the machine at most (1). Origin: 66 are the rule at full accuracy; with 1000 the
+/// search of a record of a contact that creeps took 2.4 times as long, to the same law.
 const STEPS_OF_PERIOD: f64 = 300.0;
-const FEWEST_PERIODS: f64 = 20.0;
+
+/// Periods of which the steps are allowed beside those of the record (1). Origin: chosen, for short records.
+const FURTHER_PERIODS: f64 = 20.0;
 
 /// Steps in the interval of two samples of a drive at most (1). Origin: one is the rule.
 const STEPS_OF_PIECE: f64 = 8.0;
-
-/// Experiments of one identification: vibrations of a machine, or forces along motions.
-///
-/// A slice, array or vector of either makes it.
-///
-/// ```
-/// use fmm_identify::{Experiments, ForceRecord};
-///
-/// let record = ForceRecord::of_positions(&[0.0, 0.1, 0.2], &[0.0, 0.01, 0.02], &[0.8, 1.1, 1.1])?;
-/// assert!(matches!(Experiments::from(&[record]), Experiments::Forces([_])));
-/// # Ok::<(), fmm_identify::IdentifyError>(())
-/// ```
-#[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
-pub enum Experiments<'a> {
-    /// Ring-downs, impacts and driven motions of one machine.
-    Vibrations(&'a [Experiment]),
-    /// Forces along motions of one contact.
-    Forces(&'a [ForceRecord]),
-}
-
-impl<'a> From<&'a [Experiment]> for Experiments<'a> {
-    fn from(experiments: &'a [Experiment]) -> Self {
-        Self::Vibrations(experiments)
-    }
-}
-
-impl<'a> From<&'a [ForceRecord]> for Experiments<'a> {
-    fn from(records: &'a [ForceRecord]) -> Self {
-        Self::Forces(records)
-    }
-}
-
-impl<'a, T, const N: usize> From<&'a [T; N]> for Experiments<'a>
-where
-    Self: From<&'a [T]>,
-{
-    fn from(experiments: &'a [T; N]) -> Self {
-        Self::from(experiments.as_slice())
-    }
-}
-
-impl<'a, T> From<&'a Vec<T>> for Experiments<'a>
-where
-    Self: From<&'a [T]>,
-{
-    fn from(experiments: &'a Vec<T>) -> Self {
-        Self::from(experiments.as_slice())
-    }
-}
 
 /// An experiment on a machine: a ring-down ([`ring_down`](Self::ring_down)), a hammer blow ([`impact`](Self::impact)),
 /// a motion that is driven by a measured force or by a measured motion of the base ([`driven`](Self::driven)), or a
@@ -352,7 +304,7 @@ impl Experiment {
         let frequency = self.guess.frequency();
         let is_free = self.drive().is_none() && frequency > 0.0;
         let pieces = if is_free { 0.0 } else { STEPS_OF_PIECE * self.record.len() as f64 };
-        let periods = FEWEST_PERIODS + frequency * self.record.duration();
+        let periods = FURTHER_PERIODS + frequency * self.record.duration();
         Ok(sampling.in_steps((STEPS_OF_PERIOD * periods + pieces) as usize))
     }
 
