@@ -37,8 +37,8 @@ impl SpecialCase {
         Self { law, needed: &[], restricted: &[] }
     }
 
-    /// The law called `law`, where the parameters named in `needed` have these values. A parameter that can take the
-    /// value always is not listed.
+    /// The law called `law`, where the parameters named in `needed` have these values, or come close to one that is
+    /// infinite. A parameter that can take the value always is not listed.
     pub const fn at(law: &'static str, needed: &'static [(&'static str, f64)]) -> Self {
         Self { law, needed, restricted: &[] }
     }

@@ -92,7 +92,7 @@ law_family! {
     pub fn new {
         static_not_below(sliding, breakaway)?;
     }
-    special cases [SpecialCase::of("coulomb")]
+    special cases [SpecialCase::at("coulomb", &[("losing_decay", f64::INFINITY)])]
     tried [SearchStage::OfSpeed.trial().damped()]
 }
 

@@ -134,7 +134,7 @@ law_family! {
     /// # Errors
     /// [`LawError::OutOfBounds`] if a parameter lies outside its bounds or is not finite.
     pub fn new {}
-    special cases [SpecialCase::of("coulomb_viscous")]
+    special cases [SpecialCase::at("coulomb", &[("power_coefficient", 0.0)]), SpecialCase::of("coulomb_viscous")]
     tried [SearchStage::OfSpeed.trial()]
 }
 

@@ -362,13 +362,14 @@ impl<'a> Inquiry<'a> {
         let missed: Vec<_> = (0..candidates.len()).filter_map(missed).collect();
         let fit = |(place, special): (usize, usize)| {
             let special = &identifications[special].fitted;
-            let starts = |problem: &Problem<'_>| nested_starts(problem, special);
-            let begin = match experiments {
-                Experiments::Forces(_) => Begin::From(&starts),
-                Experiments::Vibrations(_) => Begin::Extended(special),
+            let starts = |problem: &Problem<'_>| match experiments {
+                Experiments::Forces(_) => nested_starts(problem, special),
+                Experiments::Vibrations(_) => {
+                    problem.starts().iter().take(1).map(|start| problem.nested(special, start)).collect()
+                }
             };
             // A law that cannot begin there keeps its fit, and the sentence on it.
-            Some((place, self.fit(&candidates[place], experiments, begin, options, end).ok()?))
+            Some((place, self.fit(&candidates[place], experiments, Begin::From(&starts), options, end).ok()?))
         };
         for (place, found) in on_all_threads(missed, fit).into_iter().flatten() {
             // A fit that determines nothing has not begun.

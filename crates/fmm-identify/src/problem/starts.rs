@@ -165,7 +165,7 @@ impl Problem<'_> {
 
     /// The `start` with the findings of a `special` case of the law: its level, and all that has a name in both. Parts
     /// above a level, and terms that the special case lacks, are zero; parameters at whose values the law is the
-    /// special case have these.
+    /// special case have these, or the nearest within their bounds.
     pub(crate) fn nested(&self, special: &Fitted, start: &[f64]) -> Vec<f64> {
         let (law, other) = (self.law(), &special.model.law);
         let level = |law: &Law| {
@@ -183,11 +183,16 @@ impl Problem<'_> {
         let values = self.table.rows.iter().zip(&self.parameters).zip(start).map(|((row, parameter), start)| {
             let is_level = own_level.as_deref() == Some(parameter.name());
             let counterpart = their_level.as_deref().filter(|_| is_level);
-            let known = found(parameter.name()).or_else(|| counterpart.and_then(found));
+            let needed = || match row.place {
+                Place::Law(number) => needed(of_law[number]).map(|value| parameter.bounds().clamp(value)),
+                _ => None,
+            };
+            let needed = || needed().filter(|value| value.is_finite());
+            let known = found(parameter.name()).or_else(needed).or_else(|| counterpart.and_then(found));
             let missing = || match row.place {
                 Place::Law(number) => match of_law[number].role() {
                     Role::LevelAbove | Role::Excess => 0.0,
-                    _ => needed(of_law[number]).unwrap_or(*start),
+                    _ => *start,
                 },
                 Place::Term(_) | Place::Channel(_) => 0.0,
                 _ => *start,
@@ -288,5 +293,47 @@ impl Problem<'_> {
     /// The `start`, each value within its bounds.
     pub(crate) fn clamped(&self, start: &[f64]) -> Vec<f64> {
         start.iter().zip(&self.parameters).map(|(value, parameter)| parameter.bounds().clamp(*value)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use fmm_fit::{Options, Residuals};
+
+    use super::super::tests::decays;
+    use super::*;
+    use crate::fit::stages::Begin;
+    use crate::identification::Identification;
+    use crate::machine::Machine;
+
+    /// A law that becomes another one at some of its values begins with the misfit that this has ended with, or a little
+    /// more where bounds keep it from a limit.
+    #[test]
+    fn a_law_begins_where_its_special_case_has_ended() {
+        let decays = decays();
+        let problem = |candidate: &Candidate| Problem::of(candidate, Machine::per_unit_mass(), &decays).unwrap();
+        let cases = [
+            ("coulomb_viscous", "berger+linear", 1e-6),
+            ("coulomb_viscous", "stribeck", 1e-6),
+            ("coulomb", "power_law", 1e-6),
+            ("coulomb_viscous", "exponential_pair+linear", 0.2),
+        ];
+        for (special, law, rise) in cases {
+            let [special, law] = [special, law].map(|name| Candidate::named(name).unwrap());
+            assert!(special.is_nested_in(&law), "{} in {}", special.name(), law.name());
+            let options = Options::default();
+            let ended =
+                Identification::of(&problem(&special), Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()));
+            let ended = ended.unwrap();
+            let own = problem(&law).bending_in_sight();
+            let start = own.nested(&ended.fitted, &own.starts()[0]);
+            let mut residuals = vec![0.0; own.len()];
+            own.evaluate(&start, &mut residuals, None).unwrap();
+            let begun: f64 = residuals.iter().map(|residual| residual * residual).sum();
+            let before = ended.fit().sum_of_squares();
+            assert!((begun / before - 1.0).abs() < rise, "{}: {begun:e} after {before:e}", law.name());
+        }
     }
 }
