@@ -78,8 +78,8 @@ impl<'a> Levelled<'a> {
         experiments: &'a [Experiment],
         end: Option<Instant>,
     ) -> Result<Self, IdentifyError> {
-        let by = |candidate: Candidate| Problem::in_form(form, &candidate, *machine, experiments);
-        let simple = by(Candidate::of::<CoulombViscous>().with(beside.clone()))?;
+        let simple = Candidate::of::<CoulombViscous>().with(beside.clone());
+        let simple = Problem::in_form(form, &simple, *machine, experiments)?;
         let options = Options::default();
         let mut observer =
             |_: &Minimizer| if is_past(end) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
@@ -94,23 +94,35 @@ impl<'a> Levelled<'a> {
         if !(top > 0.0 && scale > 0.0 && scale.is_finite()) {
             return Err(IdentifyError::not_seen("the motion loses no energy, so there is no friction over speed"));
         }
-        let terms = beside.clone().holding(TOP_SPEED, top)?;
-        let candidate = Candidate::of::<Levels>().with(terms);
-        let (mut problem, mut holding) = (by(candidate.clone())?, None);
+        let (problem, holding) = problems(form, machine, beside, experiments, top)?;
         let mut values = line.values()[..first].to_vec();
         values.extend(KNOTS.map(|s| level + slope * s * top));
         values.push(top);
-        if let Some(level) = problem.parameters()[..problem.table.shared].get(first + STATIC) {
-            let held = by(candidate.holding(level.name(), 0.0)?)?;
-            let fitted = std::mem::replace(&mut problem, held);
-            values.push(0.0);
-            // After the blow of a hammer the contact slides until it rests.
-            let goes_on = |one: &Experiment| one.drive().is_some() && one.impact.is_none();
-            holding = experiments.iter().any(goes_on).then_some(fitted);
-        }
+        values.extend(holding.as_ref().map(|_| 0.0));
+        // After the blow of a hammer the contact slides until it rests.
+        let goes_on = |one: &Experiment| one.drive().is_some() && one.impact.is_none();
+        let holding = holding.filter(|_| experiments.iter().any(goes_on));
         values.extend_from_slice(&line.values()[shared..]);
         let (line, line_squares) = (line.values().to_vec(), line.sum_of_squares());
         Ok(Self { problem, holding, values, top, scale, line, line_squares })
+    }
+}
+
+/// The problem of levels up to the speed `top`, with the static level held at that at rest; and that with the static
+/// level fitted, where the motion may show one.
+pub(super) fn problems<'a>(
+    form: Form,
+    machine: &Machine,
+    beside: &Terms,
+    experiments: &'a [Experiment],
+    top: f64,
+) -> Result<(Problem<'a>, Option<Problem<'a>>), IdentifyError> {
+    let by = |candidate: &Candidate| Problem::in_form(form, candidate, *machine, experiments);
+    let candidate = Candidate::of::<Levels>().with(beside.clone().holding(TOP_SPEED, top)?);
+    let problem = by(&candidate)?;
+    match problem.parameters()[..problem.table.shared].get(problem.table.law + STATIC) {
+        Some(level) => Ok((by(&candidate.holding(level.name(), 0.0)?)?, Some(problem))),
+        None => Ok((problem, None)),
     }
 }
 

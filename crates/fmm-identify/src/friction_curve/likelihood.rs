@@ -108,6 +108,11 @@ impl Linearised {
         self.of_records.sum + self.of_knowledge.sum
     }
 
+    /// Sum of squares of the records at the best curve of all, if residuals were linear.
+    pub(super) fn least_squares(&self) -> f64 {
+        dot(&self.left, &self.left)
+    }
+
     /// Sum of squares after `step`, if residuals were linear.
     pub(super) fn predicted(&self, step: &[f64]) -> f64 {
         let step = DVector::from_column_slice(step);
@@ -152,7 +157,7 @@ impl Linearised {
         let order = self.places.len();
         let rank = (0..order).filter(|i| self.inverse[i * (order + 1)] > 0.0).count();
         let freedom = (self.residuals.len() as f64 - rank as f64).max(1.0);
-        let variance = (dot(&self.left, &self.left) / freedom).max(problem.noise.powi(2) * LEAST_NOISE);
+        let variance = (self.least_squares() / freedom).max(problem.noise.powi(2) * LEAST_NOISE);
         // Columns of unit length.
         let squares = self.of_records.products.diagonal() + self.of_knowledge.products.diagonal();
         let length = |square: &f64| Some(square.sqrt()).filter(|length| *length > 0.0).unwrap_or(1.0);

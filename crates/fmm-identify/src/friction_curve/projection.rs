@@ -11,9 +11,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::friction_curve::fit::{Levelled, Settled};
+use crate::friction_curve::fit::{Levelled, Settled, problems};
 use crate::friction_curve::levels::{KNOTS, LEVELS};
-use crate::friction_curve::rules::{ENOUGH, EVEN, EXPLAINED, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION};
+use crate::friction_curve::likelihood::Linearised;
+use crate::friction_curve::rules::{
+    ENOUGH, EVEN, EXPLAINED, LOST, MOST_ITERATIONS, MOST_STEPS_OF_PROJECTION, PROMISED,
+};
 use crate::machine::term::Term;
 use crate::machine::{Machine, Terms};
 use crate::problem::Problem;
@@ -89,7 +92,7 @@ impl ShownFriction {
     }
 
     /// The same with what else acts: the terms that explain most of the residuals, again and again as long as these are
-    /// no noise and some terms explain enough of them; `None` if nothing does.
+    /// no noise and some terms promise to explain some of them and explain enough; `None` if nothing does.
     pub(crate) fn beside(&self, machine: &Machine, experiments: &[Experiment], end: Option<Instant>) -> Option<Self> {
         const FURTHER: [&[Term]; 3] =
             [&[Term::CubicSpring], &[Term::CubicSpring, Term::QuinticSpring], &[Term::Change]];
@@ -104,7 +107,11 @@ impl ShownFriction {
             let further: Vec<Terms> = further.collect();
             let is_new = |terms: &&Terms| tried.iter().all(|one| one.terms != **terms);
             let new = further.iter().filter(is_new).cloned().collect();
-            let new = on_all_threads(new, |terms| Self::of(machine, terms, experiments, end).ok());
+            let new = on_all_threads(new, |terms| {
+                // What cannot be told beforehand is tried.
+                let promised = shown.promised(machine, &terms, experiments).unwrap_or(f64::INFINITY);
+                (promised >= PROMISED).then(|| Self::of(machine, terms, experiments, end).ok())?
+            });
             tried.extend(new.into_iter().flatten());
             let shown = found.map_or(self, |place| &tried[place]);
             let worth = |place: &usize| {
@@ -122,11 +129,30 @@ impl ShownFriction {
         }
     }
 
+    /// Residuals that are independent (1).
+    fn independent(&self) -> f64 {
+        self.settled.near.residuals().len() as f64 / self.settled.near.correlation().max(1.0)
+    }
+
     /// Fall of −2 ln L beside `other`, for as many residuals as are independent (1). A curve that has not settled may
     /// promise more than it keeps: what counts is the sum of squares that it was seen to leave.
     fn gain(&self, other: &Self) -> f64 {
-        let independent = self.settled.near.residuals().len() as f64 / self.settled.near.correlation().max(1.0);
-        independent * (other.squares / self.squares).ln()
+        self.independent() * (other.squares / self.squares).ln()
+    }
+
+    /// The fall for each further one of `terms`, as one step of least squares promises it.
+    fn promised(&self, machine: &Machine, terms: &Terms, experiments: &[Experiment]) -> Option<f64> {
+        let (problem, _) = problems(Table::form(machine), machine, terms, experiments, self.top).ok()?;
+        let known = |parameter: &Parameter| {
+            let place = self.names.iter().position(|name| name == parameter.name());
+            place.map_or(0.0, |place| self.settled.values[place])
+        };
+        let values: Vec<f64> = problem.parameters().iter().map(known).collect();
+        let first = problem.table.law;
+        let near = Linearised::of(&problem.simulated_roughly(), &values, first).ok()?;
+        let fall = self.independent() * (self.settled.near.least_squares() / near.least_squares()).ln();
+        let added = terms.iter().count().saturating_sub(self.terms.iter().count());
+        Some(fall / added as f64).filter(|fall| !fall.is_nan())
     }
 
     /// Starts of a fit of `problem`: its law projected, or near Coulomb and viscous friction if it states no friction
@@ -303,18 +329,40 @@ mod tests {
     use super::*;
     use crate::experiment::Preparation;
 
-    /// Friction of 0.3 m/s² that is 0.1 m/s² larger at rest and falls over 0.05 m/s: its own law begins close to it,
-    /// and a straight line is excluded.
-    #[test]
-    fn a_law_begins_on_the_friction_that_the_record_shows() {
+    /// Decay of a machine of 2 Hz whose spring has a share `cubic` of k x² (1/m²), with friction of 0.3 m/s² that is
+    /// 0.1 m/s² larger at rest and falls over 0.05 m/s.
+    fn decay(cubic: f64) -> [Experiment; 1] {
         let law = Stribeck::new(0.3, 0.4, 0.05, 2.0, 0.2).unwrap();
-        let scenario = Scenario::new(Oscillator::per_unit_mass(2.0).unwrap(), law, 1.0).unwrap();
+        let machine = Oscillator::per_unit_mass(2.0).unwrap();
+        let machine = machine.with_restoring(Restoring::polynomial(cubic, 0.0).unwrap());
+        let scenario = Scenario::new(machine, law, 1.0).unwrap();
         let motion =
             simulate(&scenario.starting_at(0.03, 0.0).unwrap(), &Sampling::uniform(2e-3, 1500).unwrap()).unwrap();
         let noise = |i: usize| 6e-4 * (((i * i * 7919) % 10_007) as f64 / 10_007.0 - 0.5);
         let velocity = motion.velocity().values().iter().enumerate().map(|(i, v)| v + noise(i)).collect();
         let record = Record::new(0.0, 2e-3, velocity, Quantity::Velocity, "m/s").unwrap();
-        let decays = [Experiment::ring_down(&record, &Preparation::default()).unwrap()];
+        [Experiment::ring_down(&record, &Preparation::default()).unwrap()]
+    }
+
+    /// A term promises much where it acts, and what chance explains where it does not.
+    #[test]
+    fn a_term_that_acts_promises_to_explain() {
+        let machine = Machine::per_unit_mass();
+        let promised = |cubic: f64, term: Term| {
+            let decays = decay(cubic);
+            let shown = ShownFriction::of(&machine, Terms::NONE, &decays, None).unwrap();
+            shown.promised(&machine, &Terms::NONE.with(term), &decays).unwrap()
+        };
+        let chance = [Term::CubicSpring, Term::Change].map(|term| promised(0.0, term));
+        assert!(chance.iter().all(|fall| (0.0..8.0).contains(fall)), "{chance:?}");
+        let bent = promised(200.0, Term::CubicSpring);
+        assert!(bent > EXPLAINED, "{bent}");
+    }
+
+    /// The law of the decay begins close to its friction, and a straight line is excluded.
+    #[test]
+    fn a_law_begins_on_the_friction_that_the_record_shows() {
+        let decays = decay(0.0);
         let machine = Machine::per_unit_mass();
         let shown = ShownFriction::of(&machine, Terms::NONE, &decays, None).unwrap();
         let problem = |candidate| Problem::of(&candidate, machine, &decays).unwrap();
