@@ -159,7 +159,16 @@ impl ShownFriction {
     /// over the speed. What the friction over the speed does not tell is that of the `others` of the same name, or
     /// for a law with internal state one of several values.
     pub(crate) fn starts(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Vec<f64>> {
-        let projected = self.all_projected(problem, others);
+        self.starts_at(&self.projected(problem, others), problem, others)
+    }
+
+    /// The same where the law was `projected`.
+    pub(crate) fn starts_at(
+        &self,
+        projected: &[Projected],
+        problem: &Problem<'_>,
+        others: &[&Fitted],
+    ) -> Vec<Vec<f64>> {
         let Some(best) = projected.first() else { return self.near(problem, others) };
         let count = if problem.table.family.is_of_speed() { 1 } else { projected.len() };
         let even = projected.iter().take(count).filter(|one| one.misfit < best.misfit + EVEN);
@@ -191,14 +200,9 @@ impl ShownFriction {
         near.collect()
     }
 
-    /// The law of `problem` where its friction over the speed is most probable, of those that a search finds; `None`
-    /// for a law that states none.
-    pub(crate) fn projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Option<Projected> {
-        self.all_projected(problem, others).into_iter().next()
-    }
-
-    /// All ends of that search, the most probable first.
-    fn all_projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Projected> {
+    /// The law of `problem` at all ends of the search for where its friction over the speed is most probable, that first;
+    /// empty for a law that states none.
+    pub(crate) fn projected(&self, problem: &Problem<'_>, others: &[&Fitted]) -> Vec<Projected> {
         let shared = problem.table.oscillator..problem.table.shared;
         let starts = self.near(problem, others);
         let mut parameters = problem.parameters()[shared.clone()].to_vec();
@@ -367,7 +371,7 @@ mod tests {
         let shown = ShownFriction::of(&machine, Terms::NONE, &decays, None).unwrap();
         let problem = |candidate| Problem::of(&candidate, machine, &decays).unwrap();
         let own = problem(Candidate::of::<Stribeck>().holding("exponent", 2.0).unwrap());
-        let projected = shown.projected(&own, &[]).unwrap();
+        let projected = shown.projected(&own, &[]).remove(0);
         assert!(projected.misfit < 40.0, "{}", projected.misfit);
         for speed in [0.01, 0.05, 0.2, 0.35] {
             let truth = 0.3 + 0.1 * (-(speed / 0.05f64).powi(2)).exp() + 0.2 * speed;
@@ -375,7 +379,7 @@ mod tests {
             assert!((found / truth - 1.0).abs() < 0.02, "{found} in place of {truth} at {speed}");
         }
         assert!((projected.start[0] - 2.0).abs() < 1e-4, "{}", projected.start[0]);
-        let line = shown.projected(&problem(Candidate::of::<CoulombViscous>()), &[]).unwrap();
+        let line = shown.projected(&problem(Candidate::of::<CoulombViscous>()), &[]).remove(0);
         assert!(line.misfit > projected.misfit + 100.0, "{} beside {}", line.misfit, projected.misfit);
     }
 }

@@ -12,7 +12,7 @@ use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::{Experiment, Experiments, reference};
 use crate::fit::stages::Begin;
-use crate::friction_curve::projection::ShownFriction;
+use crate::friction_curve::projection::{Projected, ShownFriction};
 use crate::identification::Identification;
 use crate::identification::beside::closest;
 use crate::identification::drift::drifts_in_vain;
@@ -226,6 +226,8 @@ enum Start<'a> {
     Further,
     /// Starts on the friction over the speed that the records show, and where `others` have ended.
     Friction { shown: &'a ShownFriction, others: &'a [&'a Fitted] },
+    /// These of each candidate, projected on that friction; for other parameters of the same law they are found anew.
+    Projected { shown: &'a ShownFriction, starts: &'a [Vec<Vec<f64>>] },
 }
 
 impl<'a> Start<'a> {
@@ -256,18 +258,23 @@ impl Run<'_, '_> {
         let must = matches!(start, Start::Records);
         let end = self.end.filter(|_| !must);
         let mut found = Found::default();
-        let starts = |problem: &Problem<'_>| match start {
-            Start::Friction { shown, others } => shown.starts(problem, others),
-            _ => problem.starts(),
-        };
-        let fit = |candidate: &Candidate| {
+        let fit = |(place, candidate): (usize, &Candidate)| {
             if is_past(end) {
                 return None;
             }
-            let begin = if let Start::Friction { .. } = start { Begin::From(&starts) } else { Begin::Anywhere };
+            let starts = |problem: &Problem<'_>| match start {
+                Start::Friction { shown, others } => shown.starts(problem, others),
+                Start::Projected { starts, .. } if problem.name() == candidate.law_name() => starts[place].clone(),
+                Start::Projected { shown, .. } => shown.starts(problem, &[]),
+                Start::Records | Start::Further => problem.starts(),
+            };
+            let begin = match start {
+                Start::Records | Start::Further => Begin::Anywhere,
+                Start::Friction { .. } | Start::Projected { .. } => Begin::From(&starts),
+            };
             Some(self.inquiry.fit(candidate, self.decays.into(), begin, self.options, end))
         };
-        let results = on_all_threads(candidates.iter().collect(), fit);
+        let results = on_all_threads(candidates.iter().enumerate().collect(), fit);
         for (candidate, result) in candidates.into_iter().zip(results) {
             match result {
                 Some(Ok(identification)) if !is_past(end) || identification.fit().outcome().is_success() => {
@@ -361,7 +368,8 @@ impl Run<'_, '_> {
         } else {
             Vec::new()
         };
-        let allowed = of_speed.allowed(found, shown)?;
+        let (allowed, starts) = of_speed.allowed(found, shown)?;
+        let projected = shown.map_or(Start::Further, |shown| Start::Projected { shown, starts: &starts });
         let [of_state, of_corners] = [&of_state, &of_corners].map(|options| Run { options, ..*self });
         let preslides = self.shows_presliding(tests);
         let with_state = || of_state.fit_presliding(Found::default(), plain.as_ref());
@@ -371,7 +379,7 @@ impl Run<'_, '_> {
         let is_now = is_next && !changes;
         let parts: [&(dyn Fn() -> Result<Found, IdentifyError> + Sync); 3] = [
             &|| of_corners.fit(corners.clone(), Start::Further),
-            &|| of_speed.fit(allowed.clone(), Start::of(shown, &[])),
+            &|| of_speed.fit(allowed.clone(), projected),
             &|| if is_now { with_state() } else { Ok(Found::default()) },
         ];
         for part in on_all_threads(parts.to_vec(), |part| part()) {
@@ -419,30 +427,37 @@ impl Run<'_, '_> {
     }
 
     /// The laws of the speed that the friction over the speed allows beside the best of them, and those that state
-    /// none. Those that it excludes are kept by name.
-    fn allowed(&self, found: &mut Found, shown: Option<&ShownFriction>) -> Result<Vec<Candidate>, IdentifyError> {
+    /// none, with the starts of their fits. Those that it excludes are kept by name.
+    fn allowed(
+        &self,
+        found: &mut Found,
+        shown: Option<&ShownFriction>,
+    ) -> Result<(Vec<Candidate>, Vec<Vec<Vec<f64>>>), IdentifyError> {
         let candidates = self.candidates(self.inquiry.of_speed())?;
-        let Some(shown) = shown else { return Ok(candidates) };
-        let score = |candidate: &Candidate| {
-            let problem = Problem::of(candidate, self.inquiry.machine, self.decays).ok()?;
-            let projected = shown.projected(&problem, &[]).filter(|projected| projected.shows_all)?;
-            Some(projected.misfit + 2.0 * candidate.parameter_count() as f64)
-        };
+        let Some(shown) = shown else { return Ok((candidates, Vec::new())) };
         let is_exact = self.decays.windows(2).all(|pair| pair[0].load_factor() == pair[1].load_factor());
-        let of_speed = |candidate: &&Candidate| is_exact && candidate.law.is_of_speed();
-        let scores = on_all_threads(candidates.iter().collect(), |one| Some(one).filter(of_speed).and_then(score));
-        let simple = found.simple().map(Candidate::fitted).and_then(|simple| score(&simple));
-        let best = scores.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+        let project = |candidate: &Candidate| {
+            let problem = Problem::of(candidate, self.inquiry.machine, self.decays).ok()?.bending_in_sight();
+            let projected = shown.projected(&problem, &[]);
+            let score = |best: &Projected| best.misfit + 2.0 * candidate.parameter_count() as f64;
+            let of_speed = projected.first().filter(|best| best.shows_all && is_exact && candidate.law.is_of_speed());
+            Some((of_speed.map(score), shown.starts_at(&projected, &problem, &[])))
+        };
+        let projected = on_all_threads(candidates.iter().collect(), project);
+        let score = |projected: &Option<(Option<f64>, _)>| projected.as_ref().and_then(|(score, _)| *score);
+        let simple = found.simple().map(Candidate::fitted).and_then(|simple| score(&project(&simple)));
+        let best = projected.iter().filter_map(score).fold(f64::INFINITY, f64::min);
         let most = best + ALLOWED + INEXACT * (simple.unwrap_or(best) - best).max(0.0);
-        let mut allowed = Vec::new();
-        for (candidate, score) in candidates.into_iter().zip(scores) {
-            if score.is_some_and(|score| score > most) {
+        let (mut allowed, mut starts) = (Vec::new(), Vec::new());
+        for (candidate, projected) in candidates.into_iter().zip(projected) {
+            if score(&projected).is_some_and(|score| score > most) {
                 found.excluded.push(candidate.name());
             } else {
                 allowed.push(candidate);
+                starts.push(projected.map_or_else(Vec::new, |(_, starts)| starts));
             }
         }
-        Ok(allowed)
+        Ok((allowed, starts))
     }
 
     fn score_tests(&self, found: &Found) -> (Vec<ScoreTest>, Vec<Warning>) {
