@@ -37,6 +37,6 @@ fn cell(summary: &Summary) -> Value {
         "preferred": summary.preferred,
         "named": summary.named,
         "warnings": summary.warnings,
-        "median_seconds": summary.seconds,
+        "median_seconds": summary.median_seconds(),
     })
 }

@@ -64,8 +64,8 @@ pub(crate) struct Summary {
     pub(crate) preferred: BTreeMap<String, usize>,
     pub(crate) named: BTreeMap<String, usize>,
     pub(crate) warnings: BTreeMap<String, usize>,
-    /// Median time of a judgement (s).
-    pub(crate) seconds: f64,
+    /// Times of the judgements (s), the shortest first.
+    pub(crate) seconds: Vec<f64>,
 }
 
 /// Whether `stated` is far from `truth`: more than 5 % of it, and more than half the width of the interval.
@@ -116,8 +116,14 @@ impl Summary {
         summary.bias = mean(&relative);
         summary.median_error = median(relative.iter().map(|error| error.abs()));
         summary.scatter = deviation(&scaled);
-        summary.seconds = median(outcomes.iter().map(|outcome| outcome.seconds)).unwrap_or(0.0);
+        summary.seconds = outcomes.iter().map(|outcome| outcome.seconds).collect();
+        summary.seconds.sort_by(f64::total_cmp);
         summary
+    }
+
+    /// Time that half of the judgements take at most (s).
+    pub(crate) fn median_seconds(&self) -> f64 {
+        quantile(&self.seconds, 0.5)
     }
 
     fn count(&mut self, truth: &Truth, verdict: &Verdict) {
@@ -182,7 +188,13 @@ fn mean(values: &[f64]) -> Option<f64> {
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    (!values.is_empty()).then(|| quantile(&values, 0.5))
+}
+
+/// Least of the `sorted` values that a `share` of them does not exceed; zero of none.
+pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = (share * sorted.len() as f64) as usize;
+    sorted.get(place.min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0)
 }
 
 fn deviation(values: &[f64]) -> Option<f64> {

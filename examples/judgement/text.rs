@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::Summary;
 use super::cell::Group;
-use super::summary::Share;
+use super::summary::{Share, quantile};
 
 const HEAD: &str = "\
 The default judgement, measured on simulated records of known truth.
@@ -36,6 +36,7 @@ silent    another is left, without
 pub(crate) fn text(summaries: &[Summary]) -> String {
     let mut text = HEAD.to_owned();
     rows(&mut text, summaries);
+    times(&mut text, summaries);
     let laws: Vec<&Summary> = summaries
         .iter()
         .filter(|row| matches!(row.group, Some(Group::Law | Group::Falling | Group::Changing)))
@@ -99,9 +100,22 @@ fn rows(text: &mut String, summaries: &[Summary]) {
                 row.decided,
                 row.wrong_loud + row.wrong_silent,
                 row.silently_wrong,
-                1e3 * row.seconds
+                1e3 * row.median_seconds()
             ),
         );
+    }
+}
+
+/// Times of the records of which a simple law is true, and of all others.
+fn times(text: &mut String, summaries: &[Summary]) {
+    put(text, format_args!("\nTimes of single records / s; with --threads 1 each has all threads to itself.\n\n"));
+    put(text, format_args!("{:<28}{:>6}{:>9}{:>12}{:>9}\n", "cells", "n", "median", "95 of 100", "most"));
+    for (name, is_simple) in [("right/", true), ("others", false)] {
+        let rows = summaries.iter().filter(|row| matches!(row.group, Some(Group::Coverage)) == is_simple);
+        let mut all: Vec<f64> = rows.flat_map(|row| row.seconds.iter().copied()).collect();
+        all.sort_by(f64::total_cmp);
+        let [median, most_of, most] = [0.5, 0.95, 1.0].map(|share| quantile(&all, share));
+        put(text, format_args!("{name:<28}{:>6}{median:>9.3}{most_of:>12.3}{most:>9.3}\n", all.len()));
     }
 }
 
