@@ -217,6 +217,9 @@ fn preslides(found: &Identification) -> bool {
     found.finding("contact_stiffness_per_mass").is_some()
 }
 
+/// Values from which the fits by one candidate begin.
+type StartValues = Vec<Vec<f64>>;
+
 /// Start of the fits of a search.
 #[derive(Clone, Copy)]
 enum Start<'a> {
@@ -227,7 +230,7 @@ enum Start<'a> {
     /// Starts on the friction over the speed that the records show, and where `others` have ended.
     Friction { shown: &'a ShownFriction, others: &'a [&'a Fitted] },
     /// These of each candidate, projected on that friction; for other parameters of the same law they are found anew.
-    Projected { shown: &'a ShownFriction, starts: &'a [Vec<Vec<f64>>] },
+    Projected { shown: &'a ShownFriction, starts: &'a [StartValues] },
 }
 
 impl<'a> Start<'a> {
@@ -432,7 +435,7 @@ impl Run<'_, '_> {
         &self,
         found: &mut Found,
         shown: Option<&ShownFriction>,
-    ) -> Result<(Vec<Candidate>, Vec<Vec<Vec<f64>>>), IdentifyError> {
+    ) -> Result<(Vec<Candidate>, Vec<StartValues>), IdentifyError> {
         let candidates = self.candidates(self.inquiry.of_speed())?;
         let Some(shown) = shown else { return Ok((candidates, Vec::new())) };
         let is_exact = self.decays.windows(2).all(|pair| pair[0].load_factor() == pair[1].load_factor());
