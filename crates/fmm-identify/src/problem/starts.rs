@@ -165,7 +165,8 @@ impl Problem<'_> {
 
     /// The `start` with the findings of a `special` case of the law: its level, and all that has a name in both. Parts
     /// above a level, and terms that the special case lacks, are zero; parameters at whose values the law is the
-    /// special case have these, or the nearest within their bounds.
+    /// special case have these, or the nearest within their bounds; where no bound keeps them from a limit, those of
+    /// the start.
     pub(crate) fn nested(&self, special: &Fitted, start: &[f64]) -> Vec<f64> {
         let (law, other) = (self.law(), &special.model.law);
         let level = |law: &Law| {
@@ -173,21 +174,19 @@ impl Problem<'_> {
             Some(self.table.units.fitted(parameter, self.table.form).name().to_owned())
         };
         let (own_level, their_level) = (level(law), level(other));
-        let needed = law.special_cases.iter().find(|case| Some(case.law()) == other.dry_name());
-        let needed = |parameter: &LawParameter| {
-            let named = |(name, _): &&(&str, f64)| *name == parameter.parameter().name();
-            needed.and_then(|case| case.needed().iter().find(named)).map(|(_, value)| *value)
-        };
+        let case = law.special_cases.iter().find(|case| Some(case.law()) == other.dry_name());
         let found = |name: &str| special.fit.estimate(name).map(Estimate::value);
         let of_law: Vec<&LawParameter> = law.fitted().collect();
+        let needed = |row: &Row, parameter: &Parameter| {
+            let Place::Law(number) = row.place else { return None };
+            let own = of_law[number].parameter().name();
+            let (_, value) = case?.needed().iter().find(|(name, _)| *name == own)?;
+            Some(parameter.bounds().clamp(*value)).filter(|value| value.is_finite())
+        };
         let values = self.table.rows.iter().zip(&self.parameters).zip(start).map(|((row, parameter), start)| {
             let is_level = own_level.as_deref() == Some(parameter.name());
             let counterpart = their_level.as_deref().filter(|_| is_level);
-            let needed = || match row.place {
-                Place::Law(number) => needed(of_law[number]).map(|value| parameter.bounds().clamp(value)),
-                _ => None,
-            };
-            let needed = || needed().filter(|value| value.is_finite());
+            let needed = || needed(row, parameter);
             let known = found(parameter.name()).or_else(needed).or_else(|| counterpart.and_then(found));
             let missing = || match row.place {
                 Place::Law(number) => match of_law[number].role() {
@@ -327,7 +326,11 @@ mod tests {
             let ended =
                 Identification::of(&problem(&special), Begin::Anywhere, &options, &mut |_| ControlFlow::Continue(()));
             let ended = ended.unwrap();
-            let own = problem(&law).bending_in_sight();
+            // No limit becomes a value where nothing bounds it.
+            let unbounded = problem(&law);
+            let start = unbounded.nested(&ended.fitted, &unbounded.starts()[0]);
+            assert!(start.iter().all(|value| value.is_finite()), "{}: {start:?}", law.name());
+            let own = unbounded.bending_in_sight();
             let start = own.nested(&ended.fitted, &own.starts()[0]);
             let mut residuals = vec![0.0; own.len()];
             own.evaluate(&start, &mut residuals, None).unwrap();
