@@ -439,25 +439,28 @@ impl Run<'_, '_> {
         let candidates = self.candidates(self.inquiry.of_speed())?;
         let Some(shown) = shown else { return Ok((candidates, Vec::new())) };
         let is_exact = self.decays.windows(2).all(|pair| pair[0].load_factor() == pair[1].load_factor());
+        // A law without a problem is not fitted either.
         let project = |candidate: &Candidate| {
-            let problem = Problem::of(candidate, self.inquiry.machine, self.decays).ok()?.bending_in_sight();
+            let Ok(problem) = Problem::of(candidate, self.inquiry.machine, self.decays) else {
+                return (None, Vec::new());
+            };
+            let problem = problem.bending_in_sight();
             let projected = shown.projected(&problem, &[]);
             let score = |best: &Projected| best.misfit + 2.0 * candidate.parameter_count() as f64;
             let of_speed = projected.first().filter(|best| best.shows_all && is_exact && candidate.law.is_of_speed());
-            Some((of_speed.map(score), shown.starts_at(&projected, &problem, &[])))
+            (of_speed.map(score), shown.starts_at(&projected, &problem, &[]))
         };
         let projected = on_all_threads(candidates.iter().collect(), project);
-        let score = |projected: &Option<(Option<f64>, _)>| projected.as_ref().and_then(|(score, _)| *score);
-        let simple = found.simple().map(Candidate::fitted).and_then(|simple| score(&project(&simple)));
-        let best = projected.iter().filter_map(score).fold(f64::INFINITY, f64::min);
+        let simple = found.simple().map(Candidate::fitted).and_then(|simple| project(&simple).0);
+        let best = projected.iter().filter_map(|(score, _)| *score).fold(f64::INFINITY, f64::min);
         let most = best + ALLOWED + INEXACT * (simple.unwrap_or(best) - best).max(0.0);
         let (mut allowed, mut starts) = (Vec::new(), Vec::new());
-        for (candidate, projected) in candidates.into_iter().zip(projected) {
-            if score(&projected).is_some_and(|score| score > most) {
+        for (candidate, (score, begun)) in candidates.into_iter().zip(projected) {
+            if score.is_some_and(|score| score > most) {
                 found.excluded.push(candidate.name());
             } else {
                 allowed.push(candidate);
-                starts.push(projected.map_or_else(Vec::new, |(_, starts)| starts));
+                starts.push(begun);
             }
         }
         Ok((allowed, starts))
