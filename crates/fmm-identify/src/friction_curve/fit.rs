@@ -94,7 +94,7 @@ impl<'a> Levelled<'a> {
         if !(top > 0.0 && scale > 0.0 && scale.is_finite()) {
             return Err(IdentifyError::not_seen("the motion loses no energy, so there is no friction over speed"));
         }
-        let (problem, holding) = problems(form, machine, beside, experiments, top)?;
+        let (problem, holding) = problems_of_levels(form, machine, beside, experiments, top)?;
         let mut values = line.values()[..first].to_vec();
         values.extend(KNOTS.map(|s| level + slope * s * top));
         values.push(top);
@@ -110,7 +110,7 @@ impl<'a> Levelled<'a> {
 
 /// The problem of levels up to the speed `top`, with the static level held at that at rest; and that with the static
 /// level fitted, where the motion may show one.
-pub(super) fn problems<'a>(
+pub(super) fn problems_of_levels<'a>(
     form: Form,
     machine: &Machine,
     beside: &Terms,

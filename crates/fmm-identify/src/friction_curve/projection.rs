@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::candidate::Candidate;
 use crate::error::IdentifyError;
 use crate::experiment::Experiment;
-use crate::friction_curve::fit::{Levelled, Settled, problems};
+use crate::friction_curve::fit::{Levelled, Settled, problems_of_levels};
 use crate::friction_curve::levels::{KNOTS, LEVELS};
 use crate::friction_curve::likelihood::Linearised;
 use crate::friction_curve::rules::{
@@ -142,7 +142,7 @@ impl ShownFriction {
 
     /// The fall for each further one of `terms`, as one step of least squares promises it.
     fn promised(&self, machine: &Machine, terms: &Terms, experiments: &[Experiment]) -> Option<f64> {
-        let (problem, _) = problems(Table::form(machine), machine, terms, experiments, self.top).ok()?;
+        let (problem, _) = problems_of_levels(Table::form(machine), machine, terms, experiments, self.top).ok()?;
         let known = |parameter: &Parameter| {
             let place = self.names.iter().position(|name| name == parameter.name());
             place.map_or(0.0, |place| self.settled.values[place])
