@@ -95,8 +95,8 @@ pub(crate) const SINGLE_ROUNDING: f64 = f32::EPSILON as f64;
 ///
 /// The step is the smallest difference between values that occur, or a whole fraction of it down to an eighth,
 /// such that all differences are multiples of it within 5 % (so that a lattice printed with few digits is still
-/// one). Values that differ by the rounding of single precision, 1.2e-7 of the largest, count as one. Evidence is needed: at least eight different values, or every value occurring twice on average. A constant
-/// record has none.
+/// one). Values that differ by the rounding of single precision, 1.2e-7 of the largest, count as one. Evidence is
+/// needed: at least eight different values, or every value occurring twice on average. A constant record has none.
 ///
 /// Of more than 131 072 samples, as many are looked at, evenly spread.
 ///

@@ -17,11 +17,11 @@ pub struct Saturation {
 
 /// Finds samples cut off at the largest or smallest value; `None` if there are none.
 ///
-/// A run of three or more samples at the extreme, equal but for the rounding of single precision, is cut off if the motion arrives and leaves as a cut sine does.
-/// At half the length of the run from its ends, the motion must be farther away than the flat top of a parabola in the
-/// resolution of the converter could be, and a good part of that distance must lie in the half next to the run. A
-/// quantised peak, a motion that comes to rest at its extreme, and rest at either end of the record do not satisfy
-/// this. The loss must be more than 0.1 % of the range of the record.
+/// A run of three or more samples at the extreme, equal but for the rounding of single precision, is cut off if the
+/// motion arrives and leaves as a cut sine does. At half the length of the run from its ends, the motion must be
+/// farther away than the flat top of a parabola in the resolution of the converter could be, and a good part of that
+/// distance must lie in the half next to the run. A quantised peak, a motion that comes to rest at its extreme, and
+/// rest at either end of the record do not satisfy this. The loss must be more than 0.1 % of the range of the record.
 ///
 /// Tops of one or two samples occur in fast motion. They are cut off if three or more of them lie exactly on the
 /// extreme, and the distances of their neighbours from it differ by more than noise, resolution and 1 % of the range
