@@ -191,7 +191,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     (!values.is_empty()).then(|| quantile(&values, 0.5))
 }
 
-/// Least of the `sorted` values that a `share` of them does not exceed; zero of none.
+/// Value that a `share` of the `sorted` ones, at least, does not exceed; zero of none.
 pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = (share * sorted.len() as f64) as usize;
     sorted.get(place.min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0)
