@@ -88,7 +88,7 @@ impl Residuals for Experiment {
     }
 }
 
-/// What a fit asked of its problem: the values, and whether for derivatives.
+/// Record of what a fit asked of its problem: the values, and whether for derivatives.
 struct Recorded<'a> {
     problem: &'a Experiment,
     calls: RefCell<Vec<(Vec<f64>, bool)>>,
@@ -146,7 +146,7 @@ struct Repeated<E> {
     carrying: RefCell<Trajectory<Dual<2>>>,
 }
 
-/// What the data of that fit were made with: μ (1), x₀ (m).
+/// Values with which the data of that fit were made: μ (1), x₀ (m).
 const TRUTH: [f64; 2] = [0.15, 0.0];
 /// Where the thesis begins: μ (1), x₀ (m).
 const START: [f64; 2] = [0.15, 1e-4];

@@ -9,7 +9,7 @@ const WHILE: Duration = Duration::from_millis(300);
 /// Calls that are timed together are no shorter than this (s), beside which reading the clock is nothing.
 const TOGETHER: f64 = 2e-5;
 
-/// Whether the bench is only tried, as `cargo test --benches` does.
+/// True if the bench is only tried, as `cargo test --benches` does.
 pub(crate) fn is_trial() -> bool {
     !std::env::args().any(|argument| argument == "--bench")
 }

@@ -5,7 +5,7 @@
 use fmm_record::{Array, Reader};
 use libfuzzer_sys::{Corpus, fuzz_target};
 
-/// What HDF5 begins with, here or behind the header of MATLAB.
+/// Bytes with which HDF5 begins, here or behind the header of MATLAB.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 fuzz_target!(|bytes: &[u8]| -> Corpus {

@@ -216,7 +216,7 @@ fn close_modes_are_told_apart() {
     }
 }
 
-/// What a decay is made of is suggested, with the share of the energy that each term has taken.
+/// The terms of a decay are suggested, with the share of the energy that each term has taken.
 #[test]
 fn suggestions_name_what_is_there() {
     let hardening = Restoring::polynomial(2e3, 0.0).unwrap();

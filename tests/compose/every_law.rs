@@ -30,7 +30,7 @@ fn searched<F: LawFamily>(values: &[f64], noise: f64) -> Comparison {
     search(&Machine::per_unit_mass(), &[decay]).unwrap()
 }
 
-/// Whether a law is preferred, or not excluded where the record does not decide.
+/// Asserts that the law is preferred, or not excluded where the record does not decide.
 fn assert_named<F: LawFamily>(values: &[f64]) {
     let comparison = searched::<F>(values, 1e-3);
     let is_right = |found: &Identification| found.law().split([' ', ',']).next() == Some(F::NAME);

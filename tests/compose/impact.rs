@@ -69,7 +69,7 @@ fn records(force: Vec<f64>, velocity: Vec<f64>, interval: f64) -> (Record, Recor
     )
 }
 
-/// What two channels make of it: white noise, and offsets of up to 0.5 N and 5 mm/s.
+/// Force and velocity as two channels measure them: with white noise, and offsets of up to 0.5 N and 5 mm/s.
 fn measured(force: &[f64], velocity: &[f64], interval: f64, seed: u64) -> (Record, Record) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let offsets = [random.random_range(-0.5..0.5), random.random_range(-5e-3..5e-3)];
@@ -323,7 +323,7 @@ fn other_laws() {
     assert!(matches!(two, Err(IdentifyError::Contradiction { .. })));
 }
 
-/// What an impact needs to be, and what is said if it is not.
+/// Requirements on an impact, and what is said if they are not met.
 #[test]
 fn doubtful_impacts() {
     let (force, velocity) = small::impact();

@@ -35,7 +35,7 @@ fn judged(name: &str, quantity: Quantity, unit: &str) -> Comparison {
     search(&machine(), &[decay]).unwrap()
 }
 
-/// Whether the 95 % interval of the finding called `name` holds `truth`.
+/// True if the 95 % interval of the finding called `name` holds `truth`.
 fn holds(found: &Identification, name: &str, truth: f64) -> bool {
     let (low, high) = found.interval(name, 0.95).unwrap_or_else(|| panic!("no interval of {name}: {found}"));
     (low..=high).contains(&truth)
@@ -166,7 +166,7 @@ fn presliding_is_seen_however_often_it_is_sampled() {
     assert_eq!(distance(&slow), distance(&with_another));
 }
 
-/// What is held of one law is not held of the others, and a search that has no time reports what it has.
+/// A value that is held of one law is not held of the others, and a search that has no time reports what it has.
 #[test]
 fn a_search_holds_by_law_and_ends_in_time() {
     let decay =
@@ -189,7 +189,7 @@ fn a_search_holds_by_law_and_ends_in_time() {
     );
 }
 
-/// What is held under the name that a fit gives it is held of every law that has it, in all stages.
+/// A value that is held under the name that a fit gives it is held of every law that has it, in all stages.
 #[test]
 fn a_search_holds_by_the_names_of_fits() {
     let decay =
@@ -215,7 +215,7 @@ fn threads_change_nothing() {
     assert_eq!(on(1), on(3));
 }
 
-/// What polynomials leave of a drift is taken for a law that falls or sticks: Coulomb and viscous friction are true.
+/// The drift that polynomials leave is taken for a law that falls or sticks: Coulomb and viscous friction are true.
 #[test]
 fn a_law_that_follows_a_drift_is_not_decided_for() {
     for seed in [7, 17] {

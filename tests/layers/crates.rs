@@ -5,7 +5,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// What each crate takes from others when nobody asks for a feature, and for what.
+/// Third-party crates that each crate takes when nobody asks for a feature, and for what.
 const THIRD_PARTY: &[(&str, &[(&str, &str)])] = &[
     ("fmm-model", &[]),
     ("fmm-record", &[("flate2", "inflates MATLAB files up to a limit"), REALFFT, THISERROR]),

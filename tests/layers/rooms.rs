@@ -70,7 +70,7 @@ fn read(name: &str) -> (BTreeSet<String>, Vec<Import>) {
     (rooms, imports)
 }
 
-/// What is wrong with the imports of a crate whose rooms are in this order.
+/// Faults in the imports of a crate whose rooms are in this order.
 fn faults(name: &str, order: &str) -> Vec<String> {
     let order: Vec<&str> = order.split_whitespace().collect();
     let (rooms, imports) = read(name);

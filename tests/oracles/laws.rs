@@ -18,8 +18,8 @@ const SPEED: usize = 6;
 /// The formulas are exact; f64 loses a few units in the last place times the condition of each term.
 const RELATIVE: f64 = 1e-12;
 
-/// What a relative error cannot express. Differences of numbers near 1 in 50 digits are rounded to about 1e-50. At the
-/// peak of the regularised law the derivatives are small differences of terms up to 50, rounded in f64.
+/// Error that a relative error cannot express. Differences of numbers near 1 in 50 digits are rounded to about 1e-50.
+/// At the peak of the regularised law the derivatives are small differences of terms up to 50, rounded in f64.
 fn absolute(law: &str) -> f64 {
     if law == "simscape" { 50.0 * f64::EPSILON } else { 1e-48 }
 }

@@ -87,7 +87,7 @@ impl Case {
     }
 }
 
-/// Whether a name of a mode is that of sliding in the event's direction.
+/// True if a name of a mode is that of sliding in the event's direction.
 fn is_along(event: &Event, name: &str) -> bool {
     match event.next.direction().map(|direction| direction.sign() > 0.0) {
         Some(true) => name == "slip+",
@@ -96,7 +96,7 @@ fn is_along(event: &Event, name: &str) -> bool {
     }
 }
 
-/// Whether an event is what the file says it is.
+/// True if an event is what the file says it is.
 fn is_kind(event: &Event, expected: &Value) -> bool {
     let next = &expected["next_mode"];
     let name = next.as_str().or(next[1].as_str()).or(next[0].as_str()).unwrap();

@@ -53,7 +53,7 @@ fn sampling() -> Sampling {
     Sampling::uniform(0.05, 401).unwrap()
 }
 
-/// Whether a decision was so narrow that rounding may turn it.
+/// True if a decision was so narrow that rounding may turn it.
 fn is_narrow(motion: &Trajectory) -> bool {
     let decides = |kind| matches!(kind, EventKind::Reversal | EventKind::Stop);
     motion.events().iter().any(|event| decides(event.kind) && event.margin().abs() < 1e-6)

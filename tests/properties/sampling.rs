@@ -65,7 +65,7 @@ fn more_samples_change_nothing() {
     }
 }
 
-/// What follows a sample, which channels are kept and what a trajectory held before do not matter to a bit.
+/// Later samples, the choice of channels and the old content of a trajectory do not change a sample by a bit.
 #[test]
 fn length_channels_and_used_memory_leave_no_trace() {
     let mut used = Trajectory::new();

@@ -294,7 +294,7 @@ fn intervals_of_campaigns_hold() {
     assert!((0.91..0.99).contains(&proportional), "{proportional}");
 }
 
-/// What campaigns of one kind say of a level of their pooled curve.
+/// Statements of campaigns of one kind about a level of their pooled curve.
 #[derive(Debug, Default)]
 struct Tally {
     campaigns: u32,

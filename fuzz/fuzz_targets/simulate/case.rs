@@ -120,7 +120,7 @@ impl Case {
         numbers
     }
 
-    /// Whether derivatives stay within the range of the number type.
+    /// True if derivatives stay within the range of the number type.
     pub(crate) fn is_everyday(&self) -> bool {
         self.numbers().into_iter().all(Number::is_everyday) && !matches!(self.times, Times::Uniform { .. })
     }

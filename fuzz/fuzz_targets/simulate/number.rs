@@ -34,7 +34,7 @@ impl Number {
         if value > 0.0 { value } else { 1.0 }
     }
 
-    /// Whether derivatives with respect to it and to others like it stay within the range of the number type.
+    /// True if derivatives with respect to it and to others like it stay within the range of the number type.
     pub(crate) fn is_everyday(self) -> bool {
         matches!(self, Self::Whole(_) | Self::Everyday(_))
     }

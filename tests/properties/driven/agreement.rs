@@ -36,7 +36,7 @@ impl Reach {
     }
 }
 
-/// Whether rounding may decide an event: a load within 1e-9 of the level, a zero that is only grazed, two events at
+/// True if rounding may decide an event: a load within 1e-9 of the level, a zero that is only grazed, two events at
 /// nearly the same time.
 ///
 /// A load that is a level of zero is exactly so. One that meets a level exactly has come there by symmetry: an undamped

@@ -13,7 +13,7 @@ use crate::case::log_uniform;
 /// Samples of a motion.
 const SAMPLES: usize = 97;
 
-/// What a contact is made of: a level (1), a stiffness (1/m) at which it is reached within the motion, a typical speed
+/// Properties of a contact: a level (1), a stiffness (1/m) at which it is reached within the motion, a typical speed
 /// (m/s), and the viscous coefficient (s/m) that would damp the machine critically.
 struct Contact {
     level: f64,

@@ -82,7 +82,7 @@ impl<'a> Judge<'a> {
         self.setup.run(self.solver, &self.sampling, number)?.ok()
     }
 
-    /// Whether the number `name` can be changed by two steps of `step` to either side.
+    /// True if the number `name` can be changed by two steps of `step` to either side.
     fn has_room(name: &str, value: f64, step: f64) -> bool {
         let signed = matches!(name, "x₀" | "φ" | "peak" | "rate" | "amplitude" | "base amplitude" | "v_b");
         step > 0.0 && (signed || value.abs() >= 3.0 * step)

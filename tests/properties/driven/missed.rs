@@ -39,7 +39,7 @@ fn causes(random: &mut ChaCha8Rng, peak: f64, time: f64, frequency: f64) -> Vec<
     }
 }
 
-/// Whether the contact breaks away on either engine before `end`, seen by no sample in between; none where an engine
+/// True if the contact breaks away on either engine before `end`, seen by no sample in between; none where an engine
 /// says that the spring is too weak for it.
 fn breaks_away(level: f64, causes: &[Excitation], machine: Oscillator, end: f64) -> [Option<bool>; 2] {
     let law = CoulombStatic::new(0.5 * level, level).unwrap();

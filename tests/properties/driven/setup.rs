@@ -185,7 +185,7 @@ impl Setup {
         self.causes.iter().flat_map(knots).collect()
     }
 
-    /// Whether the slope of the law at rest is steeper than any other, but not infinite.
+    /// True if the slope of the law at rest is steeper than any other, but not infinite.
     pub(crate) fn is_steep(&self) -> bool {
         matches!(self.family, Family::MakkarDixon | Family::RegularisedStribeck)
     }

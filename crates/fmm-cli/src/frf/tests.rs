@@ -76,7 +76,7 @@ fn write_npz(path: &Path, arrays: &[(&str, &str, &[f64])]) {
     archive.finish().unwrap();
 }
 
-/// What a format does to a blow: a file of it.
+/// Function that makes a file of a blow, in one format.
 type Writer = fn(&Path, &Trial);
 
 fn sets(trial: &Trial) -> [DataSet; 2] {

@@ -114,7 +114,7 @@ fn argmin_runs_the_same_iterations() {
     assert_eq!(message, "the start value of p0 is -1.2, outside its bounds [0, 1]");
 }
 
-/// What argmin holds for the best point and for its cost is what the fit gives.
+/// The best point and the cost that argmin holds are those that the fit gives.
 #[test]
 fn argmin_has_the_same_result_and_counts() {
     for start in (0..40).map(|i| [0.5 + 0.05 * f64::from(i), 1.2 - 0.02 * f64::from(i)]) {

@@ -251,7 +251,7 @@ fn a_parameter_without_influence_is_named() {
     assert!(text.ends_with("only their product is determined"), "{text}");
 }
 
-/// What the residuals depend on is said as far as one point shows it.
+/// The combination on which the residuals depend is named as far as one point shows it.
 #[test]
 fn what_is_determined_is_named_as_it_is() {
     let named = |start: &[f64], combined: fn(f64, f64) -> f64| {

@@ -15,7 +15,7 @@ const COEFFICIENT: f64 = 0.25;
 const SLOPE: f64 = 0.0196;
 const NOISE: f64 = 0.02;
 const SAMPLES: usize = 1500;
-/// What gravity adds along a sensor that is not level (m/s²).
+/// Acceleration that gravity adds along a sensor that is not level (m/s²).
 const GRAVITY: f64 = 0.3;
 
 /// The trajectory of a release with so many samples in an interval of the record.
@@ -112,7 +112,7 @@ const CORNER: f64 = 44.0;
 pub(crate) const DELAY: f64 = 5e-3;
 pub(crate) const FINER: usize = 20;
 
-/// What a Butterworth filter of second order gives of `values`, by Heun's method on a grid as fine as they are, every
+/// Output of a Butterworth filter of second order for `values`, by Heun's method on a grid as fine as they are, every
 /// `FINER`-th.
 pub(crate) fn filtered(values: &[f64]) -> Vec<f64> {
     let (angular, interval) = (TAU * CORNER, INTERVAL / FINER as f64);

@@ -171,7 +171,7 @@ fn an_added_mass_tells_the_mass() {
     assert!((one - 5.0 / MASS).abs() < 1e-4, "{one}");
 }
 
-/// What tests have in common does not get less by repeating them.
+/// Errors that tests have in common do not get less by repeating the tests.
 #[test]
 fn shared_errors_stay() {
     let of_machine = machine(0.0, 0.14);
@@ -229,7 +229,7 @@ fn kinds_of_tests_add_up() {
     }
 }
 
-/// What a pilot found is known, and tests add to it.
+/// The findings of a pilot are known, and tests add to them.
 #[test]
 fn a_pilot_is_where_tests_begin() {
     let law = CoulombViscous::new(0.25, 0.02).unwrap();

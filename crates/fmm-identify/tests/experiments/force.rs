@@ -73,7 +73,7 @@ const DELAY: f64 = 3.7e-3;
 const ZERO: f64 = 1.5;
 const NOISE: f64 = 0.05;
 
-/// What is the same for every seed: friction (N) at fine times.
+/// Truth that is the same for every seed: friction (N) at fine times.
 struct Truth {
     friction: Vec<f64>,
 }

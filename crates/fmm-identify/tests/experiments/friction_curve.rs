@@ -103,8 +103,8 @@ fn contribution(level: &FrictionLevel, source: Source) -> f64 {
     level.contributions().iter().filter(|(own, _)| *own == source).fold(0.0, |u: f64, (_, part)| u.hypot(*part))
 }
 
-/// What is declared has its relative part of each level, all parts make the uncertainty, and a curve that is kept as
-/// its levels is the same curve.
+/// A declared uncertainty has its relative part of each level, all parts make the uncertainty, and a curve that is kept
+/// as its levels is the same curve.
 #[test]
 fn an_uncertainty_has_its_sources() {
     let known = |value: f64, relative: f64| Known::new(value, relative * value).unwrap();

@@ -31,7 +31,7 @@ fn a_level_that_is_not_there_misleads_nobody() {
     assert!(levels.iter().any(|level| *level > 0.0), "m/s²: {levels:?}");
 }
 
-/// What one law alone says of a record that it explains, and what it excludes: nothing.
+/// The headline of one law alone, which explains a record, excludes no other law.
 #[test]
 fn one_law_alone_excludes_no_other() {
     let machine = Oscillator::new(MASS, STIFFNESS).unwrap().with_damping(Damping::new(3.0, 0.0).unwrap());

@@ -17,13 +17,13 @@ pub(crate) const INTERVAL: f64 = 1e-3;
 /// Of 300 intervals 95 ± 1.3 % contain the truth by chance alone.
 pub(crate) const SEEDS: u64 = 300;
 
-/// What is known of the machine: its mass and the load.
+/// Known quantities of the machine: its mass and the load.
 pub(crate) fn machine() -> Machine {
     let machine = Machine::of_mass(Known::exact(MASS).unwrap()).unwrap();
     machine.with_normal_load(Known::exact(LOAD).unwrap()).unwrap()
 }
 
-/// What a machine does, sampled.
+/// Motion of a machine, sampled.
 pub(crate) struct Motion<'a> {
     pub(crate) damping: f64,
     pub(crate) law: &'a [f64],

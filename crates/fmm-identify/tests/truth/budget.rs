@@ -194,7 +194,7 @@ fn friction_beside_a_known_damping() {
     assert!((u / expected - 1.0).abs() < 0.05, "{u} instead of {expected}");
 }
 
-/// What a law that is not excluded would change is a part of its own, and the parts still make the whole.
+/// The effect of a law that is not excluded is a part of its own, and the parts still make the whole.
 #[test]
 fn laws_that_are_left_are_a_part() {
     let decays = [noisy(&motion()[..400], 6)];

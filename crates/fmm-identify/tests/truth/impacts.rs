@@ -113,7 +113,7 @@ fn identify_impacts<F: LawFamily>(domain: Domain, machine: &Machine, trials: &[I
     identify::<F>(machine, &trials.iter().map(experiment).collect::<Vec<_>>()).unwrap()
 }
 
-/// What many seeds gave: how many intervals cover the truth of each finding, and how often something was said to be
+/// Count over many seeds: how many intervals cover the truth of each finding, and how often something was said to be
 /// left out.
 #[derive(Debug, Default)]
 struct Count {

@@ -44,8 +44,8 @@ pub(crate) fn noisy(velocity: &[f64], seed: u64) -> Experiment {
     prepared(velocity.iter().zip(noise).map(|(v, noise)| v + noise).collect())
 }
 
-/// What a fit should find for the law of these `values`: forces per mass, levels above another as their excess, no
-/// static level.
+/// Values that a fit should find for the law of these `values`: forces per mass, levels above another as their excess,
+/// no static level.
 pub(crate) fn expected<F: LawFamily>(values: &[f64]) -> Vec<f64> {
     let parameters = || F::PARAMETERS.iter().zip(values);
     let level = parameters().find(|(parameter, _)| parameter.role() == Role::Level).map_or(0.0, |(_, level)| *level);

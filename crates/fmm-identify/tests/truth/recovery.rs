@@ -116,7 +116,7 @@ fn maxwell_slip() {
     recovers_from_one::<MaxwellSlipOf<2>>(&[0.15, 4000.0, 0.1, 500.0]);
 }
 
-/// What a sliding element follows the curve by is held: a free decay hardly shows it.
+/// The attraction by which a sliding element follows the curve is held: a free decay hardly shows it.
 #[test]
 fn gms() {
     let values = [0.2, 0.3, 0.05, 2.0, 0.1, 20.0, 2000.0, 300.0, 0.7];

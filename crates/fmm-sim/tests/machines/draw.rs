@@ -39,7 +39,7 @@ impl Draws {
     }
 }
 
-/// What acts from outside.
+/// Cause that acts from outside.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Cause {
     Free,

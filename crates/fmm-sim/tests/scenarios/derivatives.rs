@@ -42,7 +42,7 @@ fn shapes<D: Scalar>([first, second]: [D; 2]) -> Vec<Excitation<D>> {
     ]
 }
 
-/// What is zero has a derivative.
+/// Excitations that are zero have derivatives.
 fn nothing<D: Scalar>([first, second]: [D; 2]) -> Vec<Excitation<D>> {
     vec![
         Excitation::harmonic(first - 8.0, D::from(7.0), D::from(0.4)).unwrap(),

@@ -51,7 +51,7 @@ fn starts_from_rest_and_straight_lines() {
     }
 }
 
-/// What the contact has done in a simulated motion it does along that motion.
+/// A contact does along a simulated motion what it has done in that motion.
 #[test]
 fn a_simulated_motion_has_its_own_bristles() {
     let law = LuGre::new(0.2, 0.3, 0.02, 2.0, 2e3, 1.0, 0.1).unwrap();

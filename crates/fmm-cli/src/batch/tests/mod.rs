@@ -140,8 +140,8 @@ fn rows(campaign: &Campaign) -> Vec<Row> {
     (0..campaign.entries.len()).map(|index| Row::of(campaign, index, &Host::default())).collect()
 }
 
-/// What was excluded, corrected or added since, and what was measured anew, is done again in the same folder, and
-/// nothing else is.
+/// Records that were excluded, corrected or added since, and those that were measured anew, are done again in the same
+/// folder, and nothing else is.
 #[test]
 fn what_changed_is_done_again() {
     let home = folder("changed");
