@@ -126,7 +126,7 @@ impl Regression {
     }
 }
 
-/// What a problem comes to.
+/// Result of a problem.
 struct Shown {
     name: &'static str,
     text: String,

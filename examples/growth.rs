@@ -1,4 +1,4 @@
-//! What `fmm identify` costs as its problem grows, as a table and a picture:
+//! Cost of `fmm identify` as its problem grows, as a table and a picture:
 //!
 //! ```text
 //! cargo build --release -p fmm-cli
@@ -45,8 +45,8 @@ const WHILE: f64 = 2.0;
 const HALF_SWINGS: f64 = 10.0;
 const SAMPLES: f64 = 1500.0;
 
-/// What is fitted by 3 to 9 parameters: initial position, natural frequency and friction, then initial velocity and
-/// offset, then damping and the spring.
+/// Fits of 3 to 9 parameters: initial position, natural frequency and friction, then initial velocity and offset, then
+/// damping and the spring.
 const LAWS: [&[&str]; 7] = [
     &["coulomb", "--hold=offset=0", "--hold=initial_velocity=0"],
     &["coulomb", "--hold=offset=0"],
@@ -118,9 +118,9 @@ impl Bench {
 
 /// Times (s) on one and on two threads as something grows.
 struct Growth {
-    /// What grows.
+    /// Quantity that grows.
     what: &'static str,
-    /// What is asked: one law, or a search.
+    /// Question that is asked: one law, or a search.
     asked: &'static str,
     points: Vec<(f64, [f64; 2])>,
 }

@@ -85,7 +85,7 @@ struct Report {
     level: f64,
     /// Digits that u is meant to, which decide how far intervals may differ.
     digits: u32,
-    /// What is printed in the guides of the first order, the second and the Monte Carlo.
+    /// Figures that are printed in the guides of the first order, the second and the Monte Carlo.
     published: [&'static str; 3],
 }
 

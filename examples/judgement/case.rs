@@ -5,7 +5,7 @@ use fmm_record::{Quantity, Record};
 
 use super::{Found, Levels, Setup};
 
-/// What a judgement should find.
+/// Truth that a judgement should find.
 #[derive(Debug, Clone)]
 pub(crate) struct Truth {
     /// Names of laws that are right; the first is that of the law which moved the machine.

@@ -40,7 +40,7 @@ pub(crate) fn named(comparison: &Comparison) -> Vec<String> {
     comparison.not_excluded().map(|found| plain(found.law())).collect()
 }
 
-/// Whether one of `warnings` says that the law is not right or not settled, or names what disturbs the record.
+/// True if one of `warnings` says that the law is not right or not settled, or names what disturbs the record.
 fn is_loud(warnings: &[Warning]) -> bool {
     warnings.iter().any(|warning| warning.severity() >= Severity::Caution)
 }
@@ -59,13 +59,13 @@ impl Stated {
         Self { value: finding.value(), uncertainty: finding.uncertainty(), interval: finding.interval(0.95) }
     }
 
-    /// Whether the interval holds `truth`; none without an interval.
+    /// True if the interval holds `truth`; none without an interval.
     pub(crate) fn holds(&self, truth: f64) -> Option<bool> {
         self.interval.map(|(low, high)| (low..=high).contains(&truth))
     }
 }
 
-/// What is said of one record.
+/// Verdict on one record.
 #[derive(Debug, Clone)]
 pub(crate) struct Verdict {
     pub(crate) preferred: String,

@@ -32,7 +32,7 @@ impl Levels {
         Self { rest: self.rest * factor, peak: self.peak * factor, beyond: self.beyond * factor }
     }
 
-    /// Whether the friction is the same at all speeds.
+    /// True if the friction is the same at all speeds.
     pub(crate) fn is_constant(self) -> bool {
         self.rest == self.peak
     }

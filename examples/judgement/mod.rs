@@ -40,5 +40,5 @@ pub(crate) use study::study;
 pub(crate) use summary::Summary;
 pub(crate) use text::text;
 
-/// What is made, or why not.
+/// The thing that is made, or the reason why not.
 pub(crate) type Found<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;

@@ -15,7 +15,7 @@ const NONE: f64 = 0.01;
 /// Largest change of a sample over itself (1).
 const ROUNDING: f64 = 1e-9;
 
-/// What is said of a record.
+/// Statement about one record.
 struct Statement {
     law: String,
     is_decided: bool,
@@ -51,7 +51,7 @@ impl Statement {
         })
     }
 
-    /// What differs in `other`: the law and whether it is decided, the laws that are left, the warnings, the numbers by
+    /// Differences in `other`: the law and whether it is decided, the laws that are left, the warnings, the numbers by
     /// the same law, and those of the curve.
     fn differs_from(&self, other: &Self) -> [bool; 5] {
         let law = (&self.law, self.is_decided) != (&other.law, other.is_decided);
@@ -70,7 +70,7 @@ fn largest_change(some: &[(f64, f64)], others: &[(f64, f64)]) -> f64 {
     some.iter().zip(others).map(change).fold(0.0, f64::max)
 }
 
-/// What differs for record number `record` of `cell` in thousandths of its unit, and where it is rounded.
+/// Differences for record number `record` of `cell` in thousandths of its unit, and where it is rounded.
 fn differences(cell: &Cell, record: u64) -> Found<[[bool; 5]; 2]> {
     let record = cell.case(record)?.record;
     let thousandths = if record.quantity() == Quantity::Displacement { "mm" } else { "mm/s" };

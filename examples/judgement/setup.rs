@@ -7,7 +7,7 @@ use fmm_sim::{Sampling, Trajectory};
 use super::law::Law;
 use super::{Found, Truth};
 
-/// What moves, and what is true of it.
+/// Machine that moves, and what is true of it.
 #[derive(Debug, Clone)]
 pub(crate) struct Setup {
     /// m (kg).
@@ -51,12 +51,12 @@ impl Setup {
         self.family()?.simulate(self.oscillator()?, &self.values, self.load, self.release, &sampling)
     }
 
-    /// What is known beforehand: mass and normal load.
+    /// Quantities that are known beforehand: mass and normal load.
     pub(crate) fn known(&self) -> Found<Machine> {
         Ok(Machine::of_mass(Known::exact(self.mass)?)?.with_normal_load(Known::exact(self.load)?)?)
     }
 
-    /// What should be found, if the largest speed is `peak_speed` (m/s).
+    /// Truth that should be found, if the largest speed is `peak_speed` (m/s).
     pub(crate) fn truth(&self, peak_speed: f64) -> Found<Truth> {
         let law = self.family()?;
         Ok(Truth {

@@ -161,7 +161,7 @@ impl Fits {
         Self { name, law, held, values, fit: fit::<F> }
     }
 
-    /// Whether record number `record` is of the law. Two in four are of a contact with Stribeck's curve and no
+    /// True if record number `record` is of the law. Two in four are of a contact with Stribeck's curve and no
     /// presliding, which most laws cannot describe.
     pub(crate) fn is_own(&self, record: u64) -> bool {
         record % 4 < 2 || self.law == "stribeck"

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::{Cell, Truth, Verdict, judge};
 
-/// What came of one record.
+/// Result of one record.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
     /// The truth and what was said, or why nothing was said.

@@ -68,15 +68,15 @@ pub(crate) struct Summary {
     pub(crate) seconds: Vec<f64>,
 }
 
-/// Whether `stated` is far from `truth`: more than 5 % of it, and more than half the width of the interval.
+/// True if `stated` is far from `truth`: more than 5 % of it, and more than half the width of the interval.
 fn is_far(stated: f64, truth: f64, interval: Option<(f64, f64)>) -> bool {
     const FAR: f64 = 0.05;
     let reach = interval.map_or(0.0, |(low, high)| 0.5 * (high - low));
     (stated - truth).abs() > (FAR * truth).max(reach)
 }
 
-/// Whether what the preferred law says of μ is far from the truth both at rest and at the peak speed. A law of one
-/// level says the same of both, and is right if it hits either.
+/// True if the μ of the preferred law is far from the truth both at rest and at the peak speed. A law of one level says
+/// the same of both, and is right if it hits either.
 fn is_wrong(truth: &Truth, verdict: &Verdict) -> bool {
     let interval = verdict.mu.and_then(|mu| mu.interval);
     let (stated, truth) = (verdict.levels, truth.levels);

@@ -68,7 +68,7 @@ def by_scipy(t: Array, v: Array) -> tuple[float, float]:
 
 
 def by_fmm(t: Array, v: Array) -> fmm.Identification:
-    """What this package finds by the same law."""
+    """Result of this package by the same law."""
     return fmm.identify(t, v, unit="m/s", law="coulomb_viscous", mass=MASS, normal_load=LOAD)
 
 

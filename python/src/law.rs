@@ -14,7 +14,7 @@ use pyo3::types::{PyFloat, PyFloatMethods, PyTuple};
 struct Functions {
     coefficient: Py<PyAny>,
     derivatives: Option<Py<PyAny>>,
-    /// What a function raised first.
+    /// The first error that a function raised.
     raised: Mutex<Option<PyErr>>,
 }
 

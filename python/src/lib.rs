@@ -58,7 +58,7 @@ mod _core {
     /// Unit, times, measured and fitted values.
     type Fit<'py> = (String, [Bound<'py, PyArray1<f64>>; 3]);
 
-    /// What a command found.
+    /// Result of a command.
     #[pyclass(frozen)]
     struct Answer {
         found: Box<dyn fmm_cli::Answer>,

@@ -63,7 +63,7 @@ pub trait Answer: Send + Sync {
     /// Samples of the records that were fitted and of the preferred fit; none of a command that fits no record.
     ///
     /// # Errors
-    /// What keeps the model from being followed.
+    /// The reason why the model cannot be followed.
     fn fits(&self) -> Result<Vec<FittedRecord>, Box<dyn Error>> {
         Ok(Vec::new())
     }

@@ -76,7 +76,7 @@ pub(crate) enum Kind {
     Option,
     /// The host stopped the command.
     Stopped,
-    /// What was measured, or in which unit, is not said.
+    /// The quantity that was measured, or its unit, is not said.
     Unclear,
     /// A file or a folder cannot be read.
     Unreadable,

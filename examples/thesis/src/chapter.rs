@@ -14,7 +14,7 @@ pub struct Chapter {
     pub targets: Vec<Target>,
     /// Printed tables beside ours, row by row.
     pub tables: Vec<Table>,
-    /// What has to be said in words.
+    /// Findings that have to be said in words.
     pub findings: Vec<Finding>,
     /// Pictures.
     pub drawings: Vec<Drawing>,
@@ -23,7 +23,7 @@ pub struct Chapter {
 /// Cells under headings.
 #[derive(Debug, Clone)]
 pub struct Table {
-    /// What it shows, with the number of the thesis' table if it is one of those.
+    /// Content in words, with the number of the thesis' table if it is one of those.
     pub caption: String,
     /// One per column, with units.
     pub headings: Vec<String>,
@@ -47,7 +47,7 @@ pub struct Finding {
 pub struct Drawing {
     /// File name without extension, such as `figure_11`.
     pub name: &'static str,
-    /// What it shows, and what of it was simulated.
+    /// Content in words, and what of it was simulated.
     pub caption: String,
     /// The picture.
     pub svg: String,
@@ -80,7 +80,7 @@ impl Chapter {
         self.drawings.push(Drawing { name, caption: caption.into(), svg: figure::drawn(panels) });
     }
 
-    /// Whether every target passes.
+    /// True if every target passes.
     pub fn passes(&self) -> bool {
         self.targets.iter().all(Target::passes)
     }

@@ -27,7 +27,7 @@ pub use program::program;
 pub use settings::Settings;
 pub use target::{Criterion, Kind, Target};
 
-/// What a chapter gives: it fails only if a computation cannot be done at all, not if a target is missed.
+/// Result of a chapter: it fails only if a computation cannot be done at all, not if a target is missed.
 pub type Found<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 /// How a chapter is computed.

@@ -46,7 +46,7 @@ pub struct MonteCarloRow {
     pub mean: f64,
     /// Standard deviation of μ.
     pub deviation: f64,
-    /// What is called sensitivity, and the product of the two columns before it.
+    /// Number that is called sensitivity, and the product of the two columns before it.
     pub sensitivity_and_product: Option<[f64; 2]>,
 }
 

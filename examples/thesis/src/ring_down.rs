@@ -13,7 +13,7 @@ use crate::{Found, printed};
 /// Sampling interval of the thesis (s).
 pub(crate) const INTERVAL: f64 = 1e-3;
 
-/// What the viscous damping is taken to be.
+/// Assumption about the viscous damping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Viscous {
     /// The mean of Table 2.

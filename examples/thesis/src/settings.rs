@@ -1,6 +1,6 @@
 //! Settings: the amount of computation, and the receiver of its progress.
 
-/// What a chapter is told before it starts.
+/// Settings that a chapter is told before it starts.
 #[derive(Clone, Copy)]
 pub struct Settings<'a> {
     quick: bool,
@@ -33,7 +33,7 @@ impl Settings<'_> {
         Settings { quick: self.quick, seed: self.seed, progress }
     }
 
-    /// Whether fewer repetitions are wanted.
+    /// True if fewer repetitions are wanted.
     pub fn is_quick(&self) -> bool {
         self.quick
     }

@@ -26,7 +26,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// What a number of ours has to satisfy.
+/// Criterion that a number of ours has to satisfy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Criterion {
     /// Within an absolute tolerance of a reference.
@@ -138,12 +138,12 @@ impl Target {
         self.kind
     }
 
-    /// Whether something is required of our value, which it can miss.
+    /// True if something is required of our value, which it can miss.
     pub fn is_required(&self) -> bool {
         self.criterion != Criterion::Shown
     }
 
-    /// Whether our value satisfies the criterion; not a number never does.
+    /// True if our value satisfies the criterion; not a number never does.
     pub fn passes(&self) -> bool {
         self.criterion.is_met_by(self.ours)
     }

@@ -124,7 +124,7 @@ class Curve:
 
 
 class Result:
-    """What a command found: its document, figures and text. It pickles as its call, which is run again if more than the
+    """Result of a command: its document, figures and text. It pickles as its call, which is run again if more than the
     document is asked for."""
 
     def __init__(self, call: Call, answer: _core.Answer | None, document: str | None = None) -> None:
@@ -157,7 +157,7 @@ class Result:
 
     @property
     def warnings(self) -> list[str]:
-        """What speaks against the result, and faults of the file, in sentences."""
+        """Reasons to doubt the result, and faults of the file, in sentences."""
         return [*self.document.get("remarks", []), *self.document.get("warnings", [])]
 
     def figures(self) -> dict[str, str]:

@@ -19,7 +19,7 @@ pub struct Logarithmic<D = f64> {
     pub increase: D,
 }
 
-/// What it does: enough to simulate it, at plain numbers and with derivatives.
+/// Formula of the law: enough to simulate it, at plain numbers and with derivatives.
 impl<D: Scalar> SlidingLaw<D> for Logarithmic<D> {
     fn coefficient(&self, speed: D) -> D {
         self.at_rest + self.increase * (speed / REFERENCE_SPEED + 1.0).ln()
@@ -29,7 +29,7 @@ impl<D: Scalar> SlidingLaw<D> for Logarithmic<D> {
     }
 }
 
-/// What its parameters are called and where they may lie: enough to fit it and to report it.
+/// Names of its parameters and where they may lie: enough to fit it and to report it.
 impl LawFamily for Logarithmic {
     const NAME: &'static str = "logarithmic";
     const PARAMETERS: &'static [LawParameter] = &[

@@ -70,7 +70,7 @@ pub(super) struct Choose {
     pub(super) seed: u64,
 }
 
-/// What is to become certain.
+/// Quantity that is to become certain.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged, deny_unknown_fields, expecting = "a name in quotes, or { friction_at = … } with a speed in m/s")]
 pub(super) enum OfAim {

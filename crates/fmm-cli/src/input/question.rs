@@ -193,7 +193,7 @@ impl Question {
         self.candidates(host)
     }
 
-    /// What is left of the time limit of a search that has `begun` then; `None` without a limit.
+    /// Time that is left of the limit of a search that has `begun` then; `None` without a limit.
     fn time_left(&self, begun: Instant) -> Option<Duration> {
         let left = self.time_limit? - begun.elapsed().as_secs_f64();
         Some(Duration::try_from_secs_f64(left.max(0.0)).unwrap_or(Duration::MAX))

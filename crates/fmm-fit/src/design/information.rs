@@ -356,8 +356,8 @@ mod tests {
     use crate::solver::options::Options;
     use fmm_model::{Dual, Scalar};
 
-    /// What is left of a joint problem when its own parameters are eliminated is the inverse of their part of the
-    /// covariance.
+    /// The information that a joint problem keeps when its own parameters are eliminated is the inverse of the
+    /// covariance of the others.
     #[test]
     fn eliminated_parameters_cost_what_the_covariance_says() {
         let (t, y) = ([0.0, 1.0, 2.0, 3.0, 4.0, 5.0], [2.01, 1.2, 0.75, 0.44, 0.28, 0.15]);

@@ -188,7 +188,7 @@ fn parasitic_motion(chapter: &mut Chapter, flexure: &Flexure) {
     );
 }
 
-/// What Figures 3 to 6 show.
+/// Vibrations that Figures 3 to 6 show.
 fn vibrations(chapter: &mut Chapter, flexure: &Flexure) -> Found<()> {
     let six = FreeVibration::of(flexure, 0.006, 5.0)?;
     let amplitude = 1e6 * largest(six.parasitic.values());

@@ -10,7 +10,7 @@ use crate::{Found, printed};
 /// Sampling frequency of the thesis (Hz).
 const RATE: f64 = 1000.0;
 
-/// What the vibrometer would record after a release, and what the flexure makes of it.
+/// Velocity that the vibrometer would record after a release, and what the flexure makes of it.
 pub(super) struct FreeVibration {
     /// Velocity along x (m/s).
     pub(super) velocity: Record,

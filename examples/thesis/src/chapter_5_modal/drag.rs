@@ -11,7 +11,7 @@ use crate::{Chapter, Found};
 /// The length that the text gives (s).
 pub(super) const COMPLETE: f64 = 45.0;
 
-/// What fits without and with a drag term make of a record of this length.
+/// Results of fits without and with a drag term to a record of this length.
 struct Outcome {
     seconds: f64,
     /// Misfit (m/s) and damping (N s/m) of the linear fit.

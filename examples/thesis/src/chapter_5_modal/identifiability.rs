@@ -8,7 +8,7 @@ use crate::printed::{MACHINE, TABLE_1};
 use crate::ring_down::INTERVAL;
 use crate::{Chapter, Criterion, Found, Settings, Target};
 
-/// What A1 fits (s).
+/// Duration that A1 fits (s).
 pub(super) const WINDOW: f64 = 5.0;
 /// White noise of the vibrometer as assumed here (m/s).
 pub(super) const NOISE: f64 = 5e-4;

@@ -27,7 +27,7 @@ pub(super) fn add(chapter: &mut Chapter, example: &Example) -> Found<()> {
     Ok(())
 }
 
-/// What is missing in the rate of energy with the contact, and the force that it stands for.
+/// Part that is missing in the rate of energy with the contact, and the force that it stands for.
 struct Difference {
     contact: Vec<EnergyRate>,
     free: Vec<EnergyRate>,

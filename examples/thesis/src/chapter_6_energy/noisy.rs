@@ -193,7 +193,7 @@ fn weak_form(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4
     Ok(row)
 }
 
-/// What an offset of the velocity does that is integrated into the position.
+/// Effect of an offset of the velocity that is integrated into the position.
 fn offset(chapter: &mut Chapter, example: &Example) -> Found<()> {
     const OFFSET: f64 = 1e-4;
     let shifted = velocity_record(example.contact.velocity().values().to_vec())?.shifted(-OFFSET)?;

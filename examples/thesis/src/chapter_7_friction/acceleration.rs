@@ -74,7 +74,7 @@ fn range(trials: &[Trial], how: &str) -> [f64; 2] {
     [differences().fold(f64::INFINITY, f64::min), differences().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// What fits of two levels give for truths with and without them; returns highest velocity (m/s) and levels for truths
+/// Results of fits of two levels for truths with and without them; returns highest velocity (m/s) and levels for truths
 /// by Table 5, which have no hysteresis.
 fn fits(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<Vec<(f64, [f64; 2])>> {
     let mean = Viscous::Mean;

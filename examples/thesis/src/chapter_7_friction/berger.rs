@@ -29,7 +29,7 @@ fn release(row: &[f64; 5]) -> Release<'_> {
     Release { viscous: Viscous::Line, law: &row[2..], load: LOAD_5, displacement: row[0] }
 }
 
-/// What the last row of Table 5 says of static and dynamic friction.
+/// Static and dynamic friction by the last row of Table 5.
 fn levels(chapter: &mut Chapter) -> Found<()> {
     let row = TABLE_5[TABLE_5.len() - 1];
     let law = Berger::new(row[2], row[3], row[4])?;

@@ -80,7 +80,7 @@ fn round_trip(chapter: &mut Chapter, settings: &Settings<'_>) -> Found<()> {
     Ok(())
 }
 
-/// What the two dampings make of one record.
+/// Coefficients that the two dampings give for one record.
 fn mean_against_line(chapter: &mut Chapter) -> Found<()> {
     let mut differences = Vec::new();
     for row in &TABLE_4 {

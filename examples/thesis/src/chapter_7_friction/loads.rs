@@ -41,13 +41,13 @@ struct Row {
     law: Vec<f64>,
 }
 
-/// What simulated highest velocities leave over of the printed ones.
+/// Differences of simulated highest velocities from the printed ones.
 struct Residue {
     /// Ours less printed (mm/s) for each of [`LOADS`].
     left: [Vec<f64>; 2],
     /// The one load that suits all rows best, with its standard uncertainty (N).
     best: (f64, f64),
-    /// What it leaves, root mean square (mm/s).
+    /// Differences that it leaves, root mean square (mm/s).
     rest: f64,
 }
 

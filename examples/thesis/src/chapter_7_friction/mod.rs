@@ -95,7 +95,7 @@ impl Release<'_> {
     }
 }
 
-/// What is known of the machine in a fit: its damping and the normal load (N).
+/// Known quantities of the machine in a fit: its damping and the normal load (N).
 #[derive(Debug, Clone, Copy)]
 struct Known {
     viscous: Viscous,

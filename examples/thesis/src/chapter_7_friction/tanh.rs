@@ -79,7 +79,7 @@ fn levels(chapter: &mut Chapter) -> Found<()> {
     Ok(())
 }
 
-/// What the start values of A6 stand for, and Eq. 7.5 as printed.
+/// Meaning of the start values of A6, and Eq. 7.5 as printed.
 fn start_of_a6(chapter: &mut Chapter) -> Found<()> {
     let law = shifted(A6)?;
     let (speed, peak) = law.law().peak().ok_or("the law has no peak")?;

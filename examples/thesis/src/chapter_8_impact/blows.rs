@@ -30,7 +30,7 @@ pub(super) const FORCE_NOISE: f64 = 0.5;
 pub(super) const NOISE: f64 = 5e-4;
 /// How far the peak of a blow may be from its level (N).
 pub(super) const SPREAD: f64 = 50.0;
-/// What is kept of the spectra (Hz).
+/// Band of the spectra that is kept (Hz).
 const BAND: (f64, f64) = (0.5, 20.5);
 
 /// A level of the hammer: its nominal peak (N) and the mean impulse of its trials (N s), as printed.

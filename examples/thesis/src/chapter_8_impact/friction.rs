@@ -170,7 +170,7 @@ fn joint_fit(chapter: &mut Chapter, joint: &Identification, trials: usize, rows:
     Ok(())
 }
 
-/// What μ is worth when mass, stiffness, damping and hammer are known as well as they are.
+/// Uncertainty of μ when mass, stiffness, damping and hammer are known as well as they are.
 fn uncertainty(chapter: &mut Chapter, trials: &[ImpactTrial]) -> Found<()> {
     let trials = &trials[..1];
     let u = |machine: &Machine, trials: &[ImpactTrial]| -> Found<f64> {

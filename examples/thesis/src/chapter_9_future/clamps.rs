@@ -90,7 +90,7 @@ fn slipping_clamps() -> Found<(MaxwellSlip, f64)> {
     Ok((MaxwellSlip::new(&elements)?, whole))
 }
 
-/// What windows of five cycles say of one record.
+/// Results of windows of five cycles of one record.
 struct Windowed {
     machine: Machine,
     /// By what the mass is multiplied.

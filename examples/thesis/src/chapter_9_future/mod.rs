@@ -31,7 +31,7 @@ pub fn chapter(settings: &Settings<'_>) -> Found<Chapter> {
     Ok(chapter)
 }
 
-/// What `of` gives for 0 up to `count`, each on a thread of its own, in this order.
+/// Results of `of` for 0 up to `count`, each on a thread of its own, in this order.
 fn side_by_side<T: Send>(count: usize, of: &(impl Fn(usize) -> Found<T> + Sync)) -> Vec<Found<T>> {
     std::thread::scope(|scope| {
         let threads: Vec<_> = (0..count).map(|index| scope.spawn(move || of(index))).collect();

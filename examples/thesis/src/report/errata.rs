@@ -7,11 +7,11 @@ const TEXT: &str = include_str!("../../../../docs/errata.md");
 pub struct Erratum {
     /// Such as E25.
     pub id: String,
-    /// What it is about.
+    /// Subject.
     pub title: String,
-    /// What the thesis prints.
+    /// Statement that the thesis prints.
     pub printed: String,
-    /// What is right.
+    /// Statement that is right.
     pub right: String,
     /// How one knows.
     pub evidence: String,

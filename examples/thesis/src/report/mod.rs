@@ -20,11 +20,11 @@ pub struct Report {
     pub outcomes: Vec<Outcome>,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether fewer repetitions were made.
+    /// True if fewer repetitions were made.
     pub quick: bool,
 }
 
-/// What became of a chapter.
+/// Result of a chapter.
 #[derive(Debug)]
 pub struct Outcome {
     /// Name of its example, such as `chapter_4_flexure`.
@@ -41,7 +41,7 @@ impl Outcome {
         self.result.as_ref().map_or(&[], |chapter| &chapter.targets)
     }
 
-    /// Whether it was computed and all its targets pass.
+    /// True if it was computed and all its targets pass.
     pub fn passes(&self) -> bool {
         self.result.as_ref().is_ok_and(Chapter::passes)
     }
@@ -53,7 +53,7 @@ impl Report {
         self.outcomes.iter().flat_map(Outcome::targets)
     }
 
-    /// Whether every chapter was computed and every target passes.
+    /// True if every chapter was computed and every target passes.
     pub fn passes(&self) -> bool {
         self.outcomes.iter().all(Outcome::passes)
     }

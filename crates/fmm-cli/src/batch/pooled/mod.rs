@@ -112,7 +112,7 @@ impl Pooled {
         Some(Self { curves, missing, left_out })
     }
 
-    /// What curves state in one number, pooled.
+    /// Quantities that curves state in one number, pooled.
     pub(super) fn stated(&self) -> impl Iterator<Item = &Quantity> {
         let levels = self.curves.iter().flat_map(|curve| &curve.levels);
         levels.filter(|level| level.speed.is_none()).map(|level| &level.friction)
@@ -171,7 +171,7 @@ fn quantity(unit: &str) -> String {
     if unit == COEFFICIENT { "friction coefficient".to_owned() } else { label("friction", unit) }
 }
 
-/// What a record tells.
+/// Row of a record, and what the record tells.
 type RowTold<'a> = (&'a Row, Told);
 
 /// Friction of each record at `speed`.

@@ -417,7 +417,7 @@ impl Run<'_, '_> {
         tests.iter().any(is_seen)
     }
 
-    /// What was `found` with fits by the laws with presliding, the further ones from where the first have ended.
+    /// The fits `found` so far and those by the laws with presliding; the further ones begin where the first ended.
     fn fit_presliding(&self, mut found: Found, shown: Option<&ShownFriction>) -> Result<Found, IdentifyError> {
         let first = self.candidates(self.inquiry.at(SearchStage::Presliding))?;
         found.add(self.fit(first, Start::of(shown, &[]))?);

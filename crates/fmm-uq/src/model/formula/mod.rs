@@ -235,7 +235,7 @@ mod tests {
         assert_eq!(Formula::new(&deep, &["x"]).unwrap().evaluate(&[2.0]).unwrap(), 2.0);
     }
 
-    /// What stands beside each other takes the parser no deeper.
+    /// Terms and factors beside each other take the parser no deeper.
     #[test]
     fn sums_are_as_long_as_they_like() {
         let long = "x + (-x)^2*2 - x/(x - -1) + ".repeat(1000) + "x";
