@@ -30,14 +30,15 @@ pub struct Damping<D = f64> {
     quadratic: D,
     cubic: D,
     power: Option<(D, D)>,
-    wind: D,
+    /// Velocity of the medium, if it moves.
+    wind: Option<D>,
 }
 
 impl<D: Scalar> Damping<D> {
     /// No damping at all.
     pub fn none() -> Self {
         let zero = D::from(0.0);
-        Self { linear: zero, quadratic: zero, cubic: zero, power: None, wind: zero }
+        Self { linear: zero, quadratic: zero, cubic: zero, power: None, wind: None }
     }
 
     /// Viscous damping `c₁` (N s/m).
@@ -143,7 +144,7 @@ impl<D: Scalar> Damping<D> {
     /// [`ModelError::NotFinite`] if the velocity is not finite.
     pub fn with_wind(mut self, velocity: D) -> Result<Self, ModelError> {
         ModelError::require_finite("velocity of the medium", velocity.value(), "m/s")?;
-        self.wind = velocity;
+        self.wind = (!vanishes(velocity)).then_some(velocity);
         Ok(self)
     }
 
@@ -176,9 +177,9 @@ impl<D: Scalar> Damping<D> {
     pub fn force(&self, velocity: D) -> D {
         let speed = velocity.abs();
         let mut force = velocity * (self.linear + speed * (self.quadratic + speed * self.cubic));
-        if !vanishes(self.wind) {
-            let through = velocity - self.wind;
-            force += self.quadratic * (through.abs() * through + self.wind.abs() * self.wind - speed * velocity);
+        if let Some(wind) = self.wind {
+            let through = velocity - wind;
+            force += self.quadratic * (through.abs() * through + wind.abs() * wind - speed * velocity);
         }
         match self.power {
             Some((coefficient, exponent)) if speed.value() > 0.0 => {

@@ -100,6 +100,11 @@ impl<D: Scalar> Oscillator<D> {
         self.stiffness
     }
 
+    /// The damping force (N) at `velocity` (m/s), as [`Damping::force`] has it.
+    pub fn damping_force(&self, velocity: D) -> D {
+        self.damping.force(velocity)
+    }
+
     /// Damping of the machine itself.
     pub fn damping(&self) -> Damping<D> {
         self.damping

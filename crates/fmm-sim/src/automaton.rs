@@ -429,7 +429,7 @@ impl<'a, D: Scalar, V: Levels<D>> Contact<'a, D, V> {
         } else {
             recorder.constant_velocity(stop, velocity, |time| at(D::from(time)))?;
         }
-        let damping = self.oscillator.damping().force(velocity);
+        let damping = self.oscillator.damping_force(velocity);
         let end = stop.min(phase.limit);
         let power = |time: f64| {
             let friction =

@@ -206,7 +206,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         // The other forms of damping cost as much as everything else here together.
         let damping = match self.linear_damping {
             Some(coefficient) => v * coefficient,
-            None => self.oscillator.damping().force(v),
+            None => self.oscillator.damping_force(v),
         };
         let balance = (force - damping - self.spring.force(x) - friction) * self.per_mass;
         if self.guided { force } else { balance }
@@ -264,7 +264,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
     /// Sum of the magnitudes of the forces (N) that `rates` adds up at `time`, whose rounding the acceleration carries.
     pub(super) fn force_size(&mut self, piece: &Piece<D>, time: f64, branch: Branch, state: &[D]) -> f64 {
         let friction = self.friction(branch, state).value().abs();
-        let damping = self.oscillator.damping().force(state[1]).value().abs();
+        let damping = self.oscillator.damping_force(state[1]).value().abs();
         // Next to a zero of a wave, or to a corner, the force is a small difference of large terms.
         // An angle is rounded as well, to as many ulp as it has turns.
         let of_wave = |wave: &ForceWave<D>| wave.amplitude.value().abs() * (1.0 + wave.angular.value() * time);
@@ -301,7 +301,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Field<'a, D, L> {
         let change = (u + reach - u).value();
         let after = self.mirrored_friction(branch, u + reach).value();
         let v = state[1].value();
-        let damping = |v: f64| self.oscillator.damping().force(D::from(v)).value();
+        let damping = |v: f64| self.oscillator.damping_force(D::from(v)).value();
         let drag = slope(damping(v + sign * reach) - damping(v), (v + sign * reach) - v);
         jacobian[size + 1] = -(drag + slope(after - before, change)) / mass;
         for (row, rate) in self.centre.iter().enumerate() {

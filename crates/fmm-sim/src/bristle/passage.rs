@@ -179,7 +179,7 @@ impl<D: Scalar, L: BristleLaw<D> + ?Sized> Run<'_, D, L> {
         self.before.copy_from_slice(&self.step.begin);
         self.before[1] = self.field.belt;
         let held = self.field.friction(self.branch, &self.before).value();
-        let machine = self.field.oscillator.damping().force(self.field.belt)
+        let machine = self.field.oscillator.damping_force(self.field.belt)
             + self.field.oscillator.restoring_force(state.position);
         self.recorder.push(Event {
             kind,

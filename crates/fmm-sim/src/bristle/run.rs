@@ -375,7 +375,7 @@ impl<'a, D: Scalar, L: BristleLaw<D> + ?Sized> Run<'a, D, L> {
         recorder.work(*time, end, smooth, |at| {
             step.at((at - *time) / length, before);
             let friction = field.friction(*branch, before);
-            let (velocity, damping) = (before[1], field.oscillator.damping().force(before[1]));
+            let (velocity, damping) = (before[1], field.oscillator.damping_force(before[1]));
             Power::of(friction, damping, piece.force(at), velocity, field.belt)
         })?;
         if self.pace.implicit {

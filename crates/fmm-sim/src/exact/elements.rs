@@ -291,7 +291,7 @@ impl<'a, D: Scalar> Yielding<'a, D> {
         recorder.work(self.time.value(), end, 1.0 / frequency, |time| {
             let State { position, velocity } = path.state(-self.time + time);
             let friction = self.friction_at(&self.moved(position, D::from(time)));
-            Power::of(friction, oscillator.damping().force(velocity), piece.force(time), velocity, self.belt)
+            Power::of(friction, oscillator.damping_force(velocity), piece.force(time), velocity, self.belt)
         })
     }
 }

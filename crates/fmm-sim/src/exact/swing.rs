@@ -326,7 +326,7 @@ impl<D: Scalar> Swing<'_, D> {
             let relative = velocity - self.belt;
             let friction =
                 self.normal_load * (flow.friction.level * phase.direction.sign() + flow.friction.slope * relative);
-            let damping = self.oscillator.damping().force(velocity);
+            let damping = self.oscillator.damping_force(velocity);
             Power::of(friction, damping, phase.piece.force(time), velocity, self.belt)
         })
     }

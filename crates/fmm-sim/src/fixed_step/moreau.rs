@@ -84,7 +84,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
         let (mut x, mut v) = (scenario.initial().position, scenario.initial().velocity);
         let mut grid = Grid::new(h, static_level, &drive);
         let mut force = grid.force(0);
-        let balance = force - oscillator.restoring_force(x) - oscillator.damping().force(belt);
+        let balance = force - oscillator.restoring_force(x) - oscillator.damping_force(belt);
         let mut mode = if v != belt {
             Mode::Slip(Direction::of(v - belt))
         } else if balance.abs() <= static_level {
@@ -99,7 +99,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
                 trajectory.set(sample, sampling.channels(), x, v);
                 if sampling.channels().acceleration() {
                     let friction = |direction: Direction| direction.sign() * law.coefficient((v - belt).abs()) * load;
-                    let machine = oscillator.restoring_force(x) + oscillator.damping().force(v);
+                    let machine = oscillator.restoring_force(x) + oscillator.damping_force(v);
                     let sliding = |direction| (force - machine - friction(direction)) / mass;
                     let acceleration = mode.direction().map_or(0.0, sliding);
                     if !acceleration.is_finite() {
@@ -115,7 +115,7 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
             let driving = theta * next_force + (1.0 - theta) * force;
             force = next_force;
             // The linear machine implicitly, other forces at the present state.
-            let beyond = oscillator.restoring_force(x) - stiffness * x + oscillator.damping().force(v) - linear * v;
+            let beyond = oscillator.restoring_force(x) - stiffness * x + oscillator.damping_force(v) - linear * v;
             let pull = linear * (1.0 - theta) * v + stiffness * (x + h * theta * (1.0 - theta) * v) + beyond;
             let free = (mass * v + h * (driving - pull)) / inertia - belt;
             let sticking = mode == Mode::Stick;
@@ -124,14 +124,14 @@ impl<L: SlidingLaw<f64> + ?Sized> Engine<f64, L> for Moreau {
             let slid = belt + free.signum() * (free.abs() - h * sliding_level.min(level) / inertia);
             // A contact that passes relative rest within the step is decided by the static level.
             let passed = !sticking && (slid - belt) * (v - belt) < 0.0 && {
-                let resting = next_force - oscillator.restoring_force(x) - oscillator.damping().force(belt);
+                let resting = next_force - oscillator.restoring_force(x) - oscillator.damping_force(belt);
                 resting.abs() <= static_level
             };
             let next = if free.abs() * inertia <= h * level || passed { belt } else { slid };
             x += h * (theta * next + (1.0 - theta) * v);
             v = next;
             let now = if v == belt { Mode::Stick } else { Mode::Slip(Direction::of(v - belt)) };
-            let balance = || force - oscillator.restoring_force(x) - oscillator.damping().force(belt);
+            let balance = || force - oscillator.restoring_force(x) - oscillator.damping_force(belt);
             match (stopped.take(), now) {
                 // A contact that holds for one step only has turned round.
                 (Some(stop), Mode::Slip(_)) => {

@@ -81,7 +81,7 @@ pub(crate) fn load<D: Scalar>(
 ) -> Curve<'static, D> {
     let State { position, velocity } = state;
     let mut load = Curve::force(piece, time);
-    load.constant -= oscillator.damping().force(velocity);
+    load.constant -= oscillator.damping_force(velocity);
     match oscillator.restoring() {
         Restoring::Sine { length } if velocity.value() != 0.0 => {
             // −k ℓ sin((x + v τ)/ℓ) is a wave.

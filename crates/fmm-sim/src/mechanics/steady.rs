@@ -34,7 +34,7 @@ impl<D: Scalar> SteadyReserve<'_, D> {
         let direction = Direction::of(velocity);
         let mut spring = Spring::new(oscillator);
         spring.begin(D::from(begin), direction);
-        let damping = oscillator.damping().force(D::from(velocity)).value();
+        let damping = oscillator.damping_force(D::from(velocity)).value();
         let mut elapsed = 0.0;
         while elapsed < span {
             let position = begin + velocity * elapsed;

@@ -167,17 +167,16 @@ impl<D: Scalar> Refiner<D> {
             return None;
         }
         let errors = step.derivative_errors();
-        let now = |direction| self.size(at.state, step, direction);
-        let greatest = by_direction::<D>(|direction| {
-            // A size that is not finite does not count.
-            let now = Some(now(direction)).filter(|size| size.is_finite()).unwrap_or(0.0);
-            self.greatest.partial(direction).max(now)
-        });
         let error = |direction: usize| errors.of(direction, self.angular);
-        let good = |direction: usize| {
-            error(direction) <= self.allowed * now(direction).max(NEGLIGIBLE * greatest.partial(direction))
-        };
-        let are_good = (0..D::DIRECTIONS).all(good);
+        let (mut greatest, mut are_good) = (self.greatest, true);
+        for direction in 0..D::DIRECTIONS {
+            let (now, known) = (self.size(at.state, step, direction), greatest.partial(direction));
+            // A size that is not finite does not count.
+            if now.is_finite() && now > known {
+                greatest += D::variable(0.0, direction) * (now - known);
+            }
+            are_good &= error(direction) <= self.allowed * now.max(NEGLIGIBLE * greatest.partial(direction));
+        }
         self.greatest = greatest;
         if are_good {
             return None;

@@ -188,7 +188,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
         // The other forms cost as much as everything else here together.
         let damping = match self.linear_damping {
             Some(coefficient) => state.velocity * coefficient,
-            None => self.oscillator.damping().force(state.velocity),
+            None => self.oscillator.damping_force(state.velocity),
         };
         let friction = self.friction(phase, side, outside, state, speed);
         let mut sum = -friction - damping - self.spring.force(state.position);
@@ -217,7 +217,7 @@ impl<'a, D: Scalar, L: SlidingLaw<D> + ?Sized> Field<'a, D, L> {
     pub(super) fn power(&self, phase: &Phase<D>, side: Side, time: f64, state: State<D>) -> Power<D> {
         let speed = self.speed(phase, state.velocity);
         let friction = self.friction(phase, side, self.outside(phase, D::from(time)), state, speed);
-        let damping = self.oscillator.damping().force(state.velocity);
+        let damping = self.oscillator.damping_force(state.velocity);
         Power::of(friction, damping, phase.piece.force(time), state.velocity, self.belt)
     }
 }

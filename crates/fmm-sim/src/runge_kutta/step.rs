@@ -98,8 +98,8 @@ impl<D: Scalar> Step<D> {
         let mut state = start;
         dense_stages(&start, self.length, &mut self.rates, &mut state, rate_of(accelerate));
         let end = [self.end.position, self.end.velocity];
-        let nested = [0, 1].map(|i| nested(&self.rates[i], end[i] - start[i], self.length));
-        Within { begin: start, nested }
+        let of = |i: usize| nested(&self.rates[i], end[i] - start[i], self.length);
+        Within { begin: start, nested: [of(0), of(1)] }
     }
 }
 

@@ -22,13 +22,13 @@ impl<D: Scalar> LoadOverPosition<D> {
     }
 
     /// True if the load does not depend on the position, not in a derivative either.
-    pub(crate) fn is_constant(self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         self.curvature.is_none()
     }
 
     /// The load at `position` (m) over that in the force-free position (1).
     #[inline]
-    pub(crate) fn factor(self, position: D) -> D {
+    pub(crate) fn factor(&self, position: D) -> D {
         let one = D::from(1.0);
         match self.curvature {
             None => one,
@@ -40,7 +40,7 @@ impl<D: Scalar> LoadOverPosition<D> {
     }
 
     /// Its slope at `position` (1/m).
-    pub(crate) fn slope(self, position: D) -> D {
+    pub(crate) fn slope(&self, position: D) -> D {
         match self.curvature {
             Some(curvature) if self.factor(position).value() > 0.0 => curvature * position * 2.0,
             _ => D::from(0.0),

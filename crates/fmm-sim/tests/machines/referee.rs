@@ -156,7 +156,7 @@ impl<'a> Referee<'a> {
         }
         let friction = self.friction(self.piece, y, &mut rates) * self.machine.load;
         rates[0] = y[1];
-        let sum = self.force(time) - friction - machine.damping().force(y[1]) - self.spring(y[0]);
+        let sum = self.force(time) - friction - machine.damping_force(y[1]) - self.spring(y[0]);
         rates[1] = sum / machine.mass();
         rates
     }
@@ -281,7 +281,7 @@ impl<'a> Referee<'a> {
     fn held(&self, time: f64, y: &Y) -> f64 {
         let machine = &self.machine.oscillator;
         let x = y[0];
-        self.force(time) - machine.restoring_force(x) - machine.damping().force(self.machine.cause.belt())
+        self.force(time) - machine.restoring_force(x) - machine.damping_force(self.machine.cause.belt())
     }
 
     /// Goes on from zero relative velocity.

@@ -169,7 +169,7 @@ mod tests {
         let oscillator = example.scenario.oscillator();
         let (x, v) = (example.contact.position().values(), example.contact.velocity().values());
         let force =
-            |x: f64, v: f64| -(oscillator.restoring_force(x) + oscillator.damping().force(v) + friction() * v.signum());
+            |x: f64, v: f64| -(oscillator.restoring_force(x) + oscillator.damping_force(v) + friction() * v.signum());
         let acceleration: Vec<f64> = x.iter().zip(v).map(|(&x, &v)| force(x, v) / oscillator.mass()).collect();
         let velocity = velocity_record(v.to_vec()).unwrap();
         let rates = method(&example).rates_of_motion(&velocity, x, &acceleration).unwrap();

@@ -251,7 +251,7 @@ fn figure(chapter: &mut Chapter, example: &Example, records: &[Vec<Record>; 4]) 
         let curve = speeds.iter().map(|speed| (1e3 * sign * speed, of(sign * speed)));
         panel.with(Role::Fitted, format!("weak form, {force:.3} N"), curve)
     };
-    let rate = |v: f64| 1e3 * (-v * oscillator.damping().force(v) - force * v.abs());
+    let rate = |v: f64| 1e3 * (-v * oscillator.damping_force(v) - force * v.abs());
     let level = |v: f64| force * v.signum();
     let panel = |y: &str, name: &str, points: Vec<(f64, f64)>, of: &dyn Fn(f64) -> f64| {
         let panel = Panel::new("velocity / (mm/s)", y, 260.0);

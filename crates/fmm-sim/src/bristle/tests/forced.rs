@@ -27,7 +27,7 @@ fn reference<L: BristleLaw<f64>>(scenario: &Scenario<f64, L>, sampling: &Samplin
                 let mut rate = [0.0];
                 scenario.law().rate(v, &[z], Regime::ALL_HOLD, &mut rate);
                 let friction = scenario.normal_load() * scenario.law().coefficient(v, &[z], &rate);
-                let machine = oscillator.damping().force(v) + oscillator.restoring_force(x);
+                let machine = oscillator.damping_force(v) + oscillator.restoring_force(x);
                 [v, (piece.force(time) - machine - friction) / oscillator.mass(), rate[0]]
             };
             let ahead = |rate: [f64; 3], by: f64| std::array::from_fn(|i| y[i] + by * rate[i]);
