@@ -289,6 +289,7 @@ fn what_cannot_be_is_refused_in_words() {
         ("identify RECORD --law coulomb --report data", "it is a folder"),
         ("identify RECORD --law coulomb --low-pass 2:0.001", "the low-pass filter of the sensor settles for"),
         ("identify RECORD --law coulomb --pendulum 1e-9", "beyond two whole turns"),
+        ("identify RECORD --law coulomb --pendulum", "the record is in m/s and not in radians"),
         ("identify RECORD --law coulomb --mass 1e300", "beyond the range of numbers"),
         ("identify RECORD --law coulomb --mass 1e-300", "beyond the range of numbers"),
     ] {

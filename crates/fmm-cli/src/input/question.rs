@@ -36,8 +36,8 @@ pub(crate) struct Question {
     hold: Vec<String>,
     /// The machine is a pendulum; for a record that is no angle in radians, with the length of the arc that makes one
     /// radian
-    #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "1")]
-    pendulum: Option<f64>,
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, default_missing_value = "")]
+    pendulum: Option<Radian>,
     /// The machine has no spring: the record is a run-down, such as the coast-down of a vehicle or the spin-down of a
     /// rotor, by its velocity or position
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", default_value_t = false,
@@ -121,8 +121,25 @@ impl Question {
         Ok(experiment.seen_by(sensor)?)
     }
 
-    /// The machine; of one whose driving force is measured, mass and stiffness may be unknown.
-    fn machine(&self, force_is_measured: bool) -> Result<Machine, Box<dyn Error>> {
+    /// Length of the arc that makes one radian of a pendulum (unit of the position of `decays`), if the machine is one: 1
+    /// for angles in radians.
+    fn pendulum(&self, decays: &[Experiment]) -> Result<Option<f64>, OfKind> {
+        let Some(Radian { length }) = self.pendulum else { return Ok(None) };
+        let no_angle = decays.iter().map(|decay| decay.record().unit()).find(|unit| !unit.starts_with("rad"));
+        match (length, no_angle) {
+            (None, Some(unit)) => Err(Kind::Contradiction.refusal(format!(
+                "--pendulum: the record is in {unit} and not in radians; give the length of the arc that makes one \
+                 radian, such as --pendulum 0.3 for 0.3 m"
+            ))),
+            _ => Ok(Some(length.unwrap_or(1.0))),
+        }
+    }
+
+    /// The machine behind `decays`; of one whose driving force is measured, mass and stiffness may be unknown.
+    fn machine(&self, decays: &[Experiment]) -> Result<Machine, Box<dyn Error>> {
+        let is_force =
+            |decay: &Experiment| decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force);
+        let force_is_measured = decays.iter().any(is_force);
         let mut machine = match (self.mass, self.stiffness) {
             (Some(_), Some(_)) if !force_is_measured => {
                 let what = "give --mass or --stiffness: a vibration shows the other one";
@@ -146,7 +163,7 @@ impl Question {
         if let Some(steady) = self.steady {
             machine = machine.with_steady_friction(steady)?;
         }
-        if let Some(length) = self.pendulum {
+        if let Some(length) = self.pendulum(decays)? {
             machine = machine.with_restoring(Restoring::sine(length)?);
         }
         Ok(machine)
@@ -270,7 +287,7 @@ impl Question {
         for (question, other) in questions {
             let of_machine = |question: &Self| {
                 [
-                    ("--pendulum", question.pendulum),
+                    ("--pendulum", question.pendulum.map(|radian| radian.length.unwrap_or(1.0))),
                     ("--run-down", question.run_down.then_some(1.0)),
                     ("--mass", question.mass),
                     ("--mass-u", Some(question.mass_u)),
@@ -320,9 +337,7 @@ impl Question {
         candidates: &[Candidate],
         show: impl FnMut(&str, &Minimizer) -> ControlFlow<()> + Send,
     ) -> Result<Comparison, Box<dyn Error>> {
-        let is_force =
-            |decay: &Experiment| decay.drive().is_some_and(|drive| drive.record().quantity() == Quantity::Force);
-        let machine = self.machine(decays.iter().any(is_force)).map_err(|error| Kind::Option.unless_known(error))?;
+        let machine = self.machine(decays).map_err(|error| Kind::Option.unless_known(error))?;
         let mut inquiry = Inquiry::of(&machine, decays).observed_by(show);
         if !candidates.is_empty() {
             return Ok(inquiry.among(candidates)?);
@@ -346,6 +361,21 @@ pub(crate) fn limit(seconds: f64) -> Result<Duration, OfKind> {
 /// Value of an option with its uncertainty.
 fn known(option: &str, value: f64, uncertainty: f64) -> Result<Known, OfKind> {
     Known::new(value, uncertainty).map_err(|error| Kind::Option.refusal(format!("{option}: {error}")))
+}
+
+/// Length of the arc that makes one radian of a pendulum; `None` for records in radians.
+#[derive(Debug, Clone, Copy)]
+struct Radian {
+    length: Option<f64>,
+}
+
+impl FromStr for Radian {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let length = (!text.is_empty()).then(|| text.parse().map_err(|_| format!("{text:?} is no length")));
+        Ok(Self { length: length.transpose()? })
+    }
 }
 
 /// A parameter that is held, of one law or of all.
