@@ -97,6 +97,12 @@ impl Reader {
                 let [values] = self.rows(table, [channel], &mut found)?;
                 self.reading(found, None, channel, values, Scale::Rate(rate))
             }
+            (None, Some(channel), None) if Clock::of(&columns[channel]).is_time => {
+                let column = &columns[channel];
+                Err(RecordError::channel(format!(
+                    "column \"{column}\" is the time, and no other column tells it; choose another channel"
+                )))
+            }
             (None, _, None) => Err(no_rate(&found.columns)),
         }
     }

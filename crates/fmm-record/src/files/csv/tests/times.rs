@@ -13,6 +13,8 @@ fn time_is_found_by_name_and_by_nature() {
     assert!(says(&read_text("1.0\n2.0\n3.0\n"), "the sampling rate is not known"));
     assert!(says(&read_text("t\n2.0\n3.0\n"), "has only the time column"));
     assert!(says(&read_text("t,v\n0,1\n0,2\n"), "time must increase"));
+    let as_channel = Reader::default().channel(0).read_from(&b"time [s],v\n0,1\n1,2\n"[..]);
+    assert!(says(&as_channel, "column \"time [s]\" is the time, and no other column tells it"));
 }
 
 #[test]
