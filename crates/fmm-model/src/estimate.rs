@@ -146,6 +146,10 @@ impl Rounded {
         let uncertainty = self.uncertainty.filter(|u| *u > 0.0 && u.is_finite() && self.value.is_finite());
         match uncertainty.map(|uncertainty| Notation::of(self.value, uncertainty)) {
             None => format!("[{}, {}]", plain(low), plain(high)),
+            Some(Notation::Apart { digits }) => {
+                let [low, high] = [low, high].map(|end| Self::significant(end, digits));
+                format!("[{low}, {high}]")
+            }
             Some(Notation::Plain { place }) => format!("[{}, {}]", at_place(low, place), at_place(high, place)),
             Some(Notation::Scaled { decimals, exponent }) => {
                 let scale = math::powi(10.0, exponent);
@@ -173,6 +177,10 @@ impl fmt::Display for Rounded {
                 let (value, uncertainty) = (signed(value / scale, decimals), signed(uncertainty / scale, decimals));
                 f.pad(&format!("({value} ± {uncertainty})e{exponent}"))
             }
+            Notation::Apart { digits } => {
+                let (value, uncertainty) = (Self::significant(value, digits), Self::significant(uncertainty, 2));
+                f.pad(&format!("{value} ± {uncertainty}"))
+            }
         }
     }
 }
@@ -183,18 +191,26 @@ enum Notation {
     Plain { place: i32 },
     /// Multiples of a power of ten.
     Scaled { decimals: usize, exponent: i32 },
+    /// The value with so many significant digits, and the uncertainty in a notation of its own.
+    Apart { digits: usize },
 }
+
+/// Decimal digits of a number of 64 bits that mean anything (1).
+const DIGITS: i32 = 16;
 
 impl Notation {
     fn of(value: f64, uncertainty: f64) -> Self {
         // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
         let place = decade(uncertainty) - 1;
         let exponent = decade(value.abs().max(uncertainty));
-        if (-4..6).contains(&exponent) && place > -12 {
+        let is_plain = (-4..6).contains(&exponent);
+        // Zeros that nobody counts, or digits that the value does not have.
+        if (is_plain && place <= -12) || exponent - place >= DIGITS {
+            Self::Apart { digits: (exponent - place + 1).min(DIGITS) as usize }
+        } else if is_plain {
             Self::Plain { place }
         } else {
-            // At most 17 digits mean anything.
-            Self::Scaled { decimals: (exponent - place).clamp(0, 16) as usize, exponent }
+            Self::Scaled { decimals: (exponent - place) as usize, exponent }
         }
     }
 }
@@ -251,6 +267,8 @@ mod tests {
         assert_eq!(text(5.5e-7, 2.0e-9), "(5.500 ± 0.020)e-7");
         assert_eq!(text(1.0, 0.0), "1 ± 0");
         assert_eq!(text(1e-9, 0.2), "0.00 ± 0.20");
+        assert_eq!(text(1.591_549_430_918_953_5, 1.24e-13), "1.59154943091895 ± 1.2e-13");
+        assert_eq!(text(1.591_549_430_918_953_5, 1.24e-17), "1.591549430918954 ± 1.2e-17");
     }
 
     #[test]
