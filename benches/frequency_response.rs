@@ -134,7 +134,7 @@ criterion_group!(benches, frequency_response, decay);
 fn main() {
     benches();
     Criterion::default().configure_from_args().final_summary();
-    print_ratio("impact_test/h1_h2_coherence", "impact_test/bare_realfft", ..=1.2);
+    print_ratio("impact_test/h1_h2_coherence", "impact_test/bare_realfft", ..=1.15);
     print_ratio("impact_test/band_to_20_hz", "impact_test/bare_realfft", ..);
     print_ratio("decay/modes", "decay/bare_realfft", ..);
     print_ratio("decay/modes_and_backbone", "decay/modes", ..);

@@ -185,14 +185,14 @@ fn ring_down(criterion: &mut Criterion) {
 
 fn print_ratios() {
     print_ratio("ring_down/thesis", "ring_down/exact", 13.0..);
-    print_ratio("ring_down/exact", "ring_down/floor", ..=1.3);
+    print_ratio("ring_down/exact", "ring_down/floor", ..=1.2);
     // Gradients of two columns.
     print_ratio("ring_down/exact_gradient", "ring_down/exact", ..=2.5);
     print_ratio("ring_down/thesis", "ring_down/moreau", ..);
     print_ratio("ring_down/thesis", "ring_down/runge_kutta", ..);
     print_ratio("ring_down/thesis", "ring_down/exact_elements", ..);
-    print_ratio("ring_down/bristle", "ring_down/thesis", ..=8.0);
-    print_ratio("ring_down/bristle_lugre", "ring_down/thesis", ..=30.0);
+    print_ratio("ring_down/bristle", "ring_down/thesis", ..=4.0);
+    print_ratio("ring_down/bristle_lugre", "ring_down/thesis", ..=15.0);
     print_ratio("ring_down/bristle_gradient", "ring_down/bristle", ..);
     print_ratio("berger/thesis", "berger/runge_kutta_1e-10", 1.0..);
     print_ratio("berger/thesis", "berger/runge_kutta", ..);
