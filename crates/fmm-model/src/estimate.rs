@@ -146,13 +146,9 @@ impl Rounded {
         let uncertainty = self.uncertainty.filter(|u| *u > 0.0 && u.is_finite() && self.value.is_finite());
         match uncertainty.map(|uncertainty| Notation::of(self.value, uncertainty)) {
             None => format!("[{}, {}]", plain(low), plain(high)),
-            Some(Notation::Apart { digits }) => {
-                let [low, high] = [low, high].map(|end| Self::significant(end, digits));
-                format!("[{low}, {high}]")
-            }
             Some(Notation::Plain { place }) => format!("[{}, {}]", at_place(low, place), at_place(high, place)),
-            Some(Notation::Scaled { decimals, exponent }) => {
-                let scale = math::powi(10.0, exponent);
+            Some(Notation::Scaled { place, exponent }) => {
+                let (scale, decimals) = (math::powi(10.0, exponent), (exponent - place) as usize);
                 format!("[{}, {}]e{exponent}", signed(low / scale, decimals), signed(high / scale, decimals))
             }
         }
@@ -170,16 +166,19 @@ impl fmt::Display for Rounded {
         }
         match Notation::of(value, uncertainty) {
             Notation::Plain { place } => {
-                f.pad(&format!("{} ± {}", at_place(value, place), at_place(uncertainty, place)))
+                // Digits that the value does not have, or zeros that nobody counts.
+                let is_apart = decade(uncertainty) <= place || place <= -12;
+                let text = if is_apart { Self::significant(uncertainty, 2) } else { at_place(uncertainty, place) };
+                f.pad(&format!("{} ± {text}", at_place(value, place)))
             }
-            Notation::Scaled { decimals, exponent } => {
-                let scale = math::powi(10.0, exponent);
+            Notation::Scaled { place, exponent } if decade(uncertainty) <= place => {
+                let decimals = (exponent - place) as usize;
+                f.pad(&format!("{value:.decimals$e} ± {}", Self::significant(uncertainty, 2)))
+            }
+            Notation::Scaled { place, exponent } => {
+                let (scale, decimals) = (math::powi(10.0, exponent), (exponent - place) as usize);
                 let (value, uncertainty) = (signed(value / scale, decimals), signed(uncertainty / scale, decimals));
                 f.pad(&format!("({value} ± {uncertainty})e{exponent}"))
-            }
-            Notation::Apart { digits } => {
-                let (value, uncertainty) = (Self::significant(value, digits), Self::significant(uncertainty, 2));
-                f.pad(&format!("{value} ± {uncertainty}"))
             }
         }
     }
@@ -189,10 +188,8 @@ impl fmt::Display for Rounded {
 enum Notation {
     /// Plain numbers, down to the decimal `place`.
     Plain { place: i32 },
-    /// Multiples of a power of ten.
-    Scaled { decimals: usize, exponent: i32 },
-    /// The value with so many significant digits, and the uncertainty in a notation of its own.
-    Apart { digits: usize },
+    /// Multiples of a power of ten, down to the decimal `place`.
+    Scaled { place: i32, exponent: i32 },
 }
 
 /// Decimal digits of a number of 64 bits that mean anything (1).
@@ -200,18 +197,11 @@ const DIGITS: i32 = 16;
 
 impl Notation {
     fn of(value: f64, uncertainty: f64) -> Self {
-        // The decimal place of the second digit of the uncertainty; rounding up to 100 is harmless.
-        let place = decade(uncertainty) - 1;
         let exponent = decade(value.abs().max(uncertainty));
-        let is_plain = (-4..6).contains(&exponent);
-        // Zeros that nobody counts, or digits that the value does not have.
-        if (is_plain && place <= -12) || exponent - place >= DIGITS {
-            Self::Apart { digits: (exponent - place + 1).min(DIGITS) as usize }
-        } else if is_plain {
-            Self::Plain { place }
-        } else {
-            Self::Scaled { decimals: (exponent - place) as usize, exponent }
-        }
+        // The decimal place of the second digit of the uncertainty, or of the last one that the value has; rounding up
+        // to 100 is harmless.
+        let place = (decade(uncertainty) - 1).max(exponent + 1 - DIGITS);
+        if (-4..6).contains(&exponent) { Self::Plain { place } } else { Self::Scaled { place, exponent } }
     }
 }
 
@@ -269,6 +259,10 @@ mod tests {
         assert_eq!(text(1e-9, 0.2), "0.00 ± 0.20");
         assert_eq!(text(1.591_549_430_918_953_5, 1.24e-13), "1.59154943091895 ± 1.2e-13");
         assert_eq!(text(1.591_549_430_918_953_5, 1.24e-17), "1.591549430918954 ± 1.2e-17");
+        assert_eq!(text(1.5, 1.24e-13), "1.50000000000000 ± 1.2e-13");
+        assert_eq!(text(123_456.0, 1e-20), "123456.0000000000 ± 1e-20");
+        assert_eq!(text(5.5e-7, 1.0e-30), "5.500000000000000e-7 ± 1e-30");
+        assert_eq!(Rounded::new(1.5, Some(1e-20)).interval(0.0, 2.0), "[0.000000000000000, 2.000000000000000]");
     }
 
     #[test]
