@@ -244,6 +244,15 @@ mod tests {
     use super::*;
     use crate::dual::Dual;
 
+    /// A medium at rest, of a velocity that is an unknown, has a derivative: −2 c₂ |v|.
+    #[test]
+    fn a_wind_of_zero_has_a_derivative() {
+        let drag =
+            Damping::new(Dual::<1>::from(0.0), Dual::from(0.4)).unwrap().with_wind(Dual::variable(0.0, 0)).unwrap();
+        let force = drag.force(Dual::from(20.0));
+        assert!((force.value() - 160.0).abs() < 1e-12 && (force.partial(0) + 16.0).abs() < 1e-12, "{force:?}");
+    }
+
     /// A coefficient that is zero but has a derivative is a part of the damping.
     #[test]
     fn a_power_that_is_zero_has_its_derivative() {
