@@ -124,14 +124,14 @@ impl Question {
     /// Length of the arc that makes one radian of a pendulum (unit of the position of `decays`), if the machine is one: 1
     /// for angles in radians.
     fn pendulum(&self, decays: &[Experiment]) -> Result<Option<f64>, OfKind> {
-        let Some(Radian { length }) = self.pendulum else { return Ok(None) };
+        let Some(radian) = self.pendulum else { return Ok(None) };
         let no_angle = decays.iter().map(|decay| decay.record().unit()).find(|unit| !unit.starts_with("rad"));
-        match (length, no_angle) {
+        match (radian.length, no_angle) {
             (None, Some(unit)) => Err(Kind::Contradiction.refusal(format!(
                 "--pendulum: the record is in {unit} and not in radians; give the length of the arc that makes one \
                  radian, such as --pendulum 0.3 for 0.3 m"
             ))),
-            _ => Ok(Some(length.unwrap_or(1.0))),
+            _ => Ok(Some(radian.arc())),
         }
     }
 
@@ -287,7 +287,7 @@ impl Question {
         for (question, other) in questions {
             let of_machine = |question: &Self| {
                 [
-                    ("--pendulum", question.pendulum.map(|radian| radian.length.unwrap_or(1.0))),
+                    ("--pendulum", question.pendulum.map(Radian::arc)),
                     ("--run-down", question.run_down.then_some(1.0)),
                     ("--mass", question.mass),
                     ("--mass-u", Some(question.mass_u)),
@@ -367,6 +367,13 @@ fn known(option: &str, value: f64, uncertainty: f64) -> Result<Known, OfKind> {
 #[derive(Debug, Clone, Copy)]
 struct Radian {
     length: Option<f64>,
+}
+
+impl Radian {
+    /// The length, in radians for angles.
+    fn arc(self) -> f64 {
+        self.length.unwrap_or(1.0)
+    }
 }
 
 impl FromStr for Radian {
