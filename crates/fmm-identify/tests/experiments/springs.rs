@@ -109,7 +109,7 @@ fn a_pendulum_has_no_further_spring() {
     );
 }
 
-/// A filter leaves a beginning of a decay that looks like a bent spring to the first residuals.
+/// The beginning of a decay behind a filter looks like a bent spring to the first residuals.
 #[test]
 fn a_filter_is_no_spring() {
     let motion = acceleration::motion(22e-3, FINER);
